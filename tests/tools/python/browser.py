@@ -9,6 +9,7 @@ import select
 import shutil
 import subprocess
 import tempfile
+import time
 
 NAMES = ("chromium", "chromium-browser", "google-chrome", "chrome")
 
@@ -91,6 +92,10 @@ class Browser:
         elif method == "Network.requestWillBeSent":
             self.requests.append(about["request"]["url"][:200])
 
+    def outside(self):
+        """What it has asked any network for."""
+        return [url for url in self.requests if not url.startswith(("file:", "about:", "blob:", "data:"))]
+
     def emulate(self, scheme="light", media=""):
         """scheme: light or dark; media: "print" or as on a screen."""
         self.call("Emulation.setEmulatedMedia", media=media,
@@ -109,6 +114,15 @@ class Browser:
         if "exceptionDetails" in answer:
             raise RuntimeError(f"{expression}: {answer['exceptionDetails']}")
         return answer["result"].get("value")
+
+    def until(self, condition, seconds=500):  # before CTest ends the test
+        """The value of an expression once it is true, or not empty."""
+        end = time.monotonic() + seconds
+        while not (value := self.evaluate(condition)):
+            if time.monotonic() > end:
+                raise TimeoutError(f"never came true: {condition}")
+            time.sleep(0.05)
+        return value
 
     def shot(self, name, most=12000):
         """For who wants to look: the page as PNG, its upper part where it is longer than so many pixels, in the folder

@@ -1,5 +1,7 @@
-"""What the tests share: small results, made once by the program in the working folder, and how errors are checked."""
+"""What the tests share: small results, made once by the program in the working folder; how errors are checked; what a
+page of HTML refers to."""
 import functools
+import html.parser
 import unittest
 
 import cradle
@@ -13,6 +15,22 @@ class Case(unittest.TestCase):
             call(*arguments, **keys)
         self.assertEqual(raised.exception.status, status, raised.exception.message)
         return raised.exception
+
+
+class Page(html.parser.HTMLParser):
+    """The ids of a page, what it links to, and what is loaded with it."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.ids, self.links, self.loads = [], [], []
+        self.feed(text)
+
+    def handle_starttag(self, tag, attributes):
+        for name, value in attributes:
+            if name == "id":
+                self.ids.append(value)
+            elif name in ("href", "xlink:href", "src", "action", "srcset", "poster"):
+                (self.links if tag == "a" else self.loads).append(value or "")
 
 
 def set_words(settings):

@@ -35,8 +35,7 @@ class Reader(unittest.TestCase):
             for scheme in ("light", "dark"):
                 self.load(make, scheme)
                 self.assertEqual(self.browser.complaints, [], make.__name__)
-                outside = [url for url in self.browser.requests if not url.startswith(("file://", "data:", "blob:"))]
-                self.assertEqual(outside, [])
+                self.assertEqual(self.browser.outside(), [])
                 files = [url for url in self.browser.requests if url.startswith("file://")]
                 self.assertEqual(len(files), 1, "the page itself, and nothing beside it")
                 self.browser.shot(f"{make.__name__}-{scheme}")

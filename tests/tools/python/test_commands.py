@@ -24,8 +24,7 @@ class Runs(small.Case):
     def test_scenes_are_names_files_texts_dicts_and_results(self):
         with cradle.run("fig5", output="name.h5") as first:
             text, scene = first.scene_text, first.scene
-            with open("fig5.toml", "w") as file:
-                file.write(text)
+            small.written("fig5.toml", text.encode())
             for other in ("fig5.toml", text, scene, first):
                 with cradle.run(other, output="again.h5") as again:
                     self.assertEqual(again.series.energy.values.tolist(), first.series.energy.values.tolist())

@@ -1,5 +1,5 @@
 """The manual's pages, as they stand: every command and every example is run, page by page, each page in a folder of its
-own, and prints what the page says it prints.
+own, and prints what the page says it prints. Of README, the Python.
 
     ```sh, ```python             is run; after `<!-- status: 3 -->` commands have to end with that status
     ```LANGUAGE title="NAME"     is written to the file NAME
@@ -22,11 +22,10 @@ from typing import NamedTuple
 
 import matplotlib.pyplot as plt
 
-import cradle
 import small
 
 HERE = os.path.dirname(os.path.abspath(__file__))
-PAGES = os.path.join(HERE, "..", "..", "..", "tools", "manual")
+ROOT = os.path.join(HERE, "..", "..", "..")
 MOST_NOT_RUN = 12  # of some hundred blocks
 SHOWN = os.environ.get("CRADLE_MANUAL_SHOWN")  # set: shows what each block prints, and how long it takes
 
@@ -46,14 +45,13 @@ class Block(NamedTuple):
 
 def blocks(page):
     """The blocks of a page, and the page."""
-    with open(page, encoding="utf-8") as file:
-        whole = file.read()
-    return [Block(found["language"], found["title"] or "", found["text"], found["mark"] or "", found["said"] or "",
-                  found.start(), found.end()) for found in BLOCK.finditer(whole)], whole
+    whole = small.read(page)
+    found = [Block(**block.groupdict(""), begin=block.start(), end=block.end()) for block in BLOCK.finditer(whole)]
+    return found, whole
 
 
 def pages():
-    return sorted(glob.glob(os.path.join(PAGES, "*.md")))
+    return sorted(glob.glob(os.path.join(ROOT, "tools", "manual", "*.md")))
 
 
 def missing(expected, output):
@@ -97,8 +95,7 @@ class Manual(unittest.TestCase):
         output, end = None, 0
         for block in found:
             if block.title:
-                with open(block.title, "w", encoding="utf-8") as file:
-                    file.write(block.text)
+                small.written(block.title, block.text.encode())
             if block.language == "text" and output is not None and "\n#" not in whole[end:block.begin]:
                 with self.subTest(said=block.text):
                     self.assertIsNone(missing(block.text, output), f"is not printed; this is:\n{output}")
@@ -116,6 +113,13 @@ class Manual(unittest.TestCase):
             end = block.end
             if SHOWN:
                 print(f"\n== {time.monotonic() - began:.1f} s\n{text}--\n{output}", file=sys.stderr)
+
+    def test_python_of_readme(self):
+        found = [block for block in blocks(os.path.join(ROOT, "README.md"))[0] if block.language == "python"]
+        self.assertTrue(found)
+        for block in found:
+            with self.subTest(block.text):
+                self.python(block)
 
     def test_blocks_that_are_not_run_are_few_and_say_why(self):
         marked = [block for page in pages() for block in blocks(page)[0] if block.mark == "not run"]

@@ -11,8 +11,6 @@ import itertools
 import json
 import math
 import pathlib
-import shutil
-import subprocess
 import tempfile
 import time
 import unittest
@@ -25,10 +23,9 @@ import numpy as np
 import browser
 import cradle
 from cradle import microscope
-from cradle.program import find
+from cradle.page import page
 from cradle.scene import scene_text
 
-SOURCES = pathlib.Path(microscope.__file__).parent
 HUNDREDTH = 0.01  # of a pixel
 
 
@@ -44,13 +41,6 @@ class Microscope(browser.Browser):
         self.load(path)
         self.until("Boolean(window.cradleMicroscopeTest)")
         self.run("cradleMicroscopeTest.ready.then(() => 1)")
-
-    def until(self, condition, seconds=500):  # before CTest ends the test
-        end = time.monotonic() + seconds
-        while not self.run(condition):
-            if time.monotonic() > end:
-                raise TimeoutError(f"never came true: {condition}")
-            time.sleep(0.05)
 
     def mouse(self, kind, x, y, **more):
         self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, **more)
@@ -127,11 +117,11 @@ def collapse_result(folder, collisions):
                         "inelastic collapse", time=12 / 7)
 
 
-def crossing_rows(half, restitution="1"):
+def rows_result(folder, half):
     """Collisions of 2 half elastic particles in two rows at speeds 1/2 and -1/2: world lines are exchanged at
     collisions, so that lines i and j of the two rows, straight all along, cross at (x_j - x_i); particle i + j is then
-    on the left."""
-    scene = {"title": "crossing rows", "law": {"type": "inelastic", "restitution": float(restitution), "cutoff": 0},
+    on the left. The result, and time, place and left particle of every collision."""
+    scene = {"title": "crossing rows", "law": {"type": "inelastic", "restitution": 1.0, "cutoff": 0},
              "initial": {"type": "rows", "particles": 2 * half, "speed": 0.5, "spacing": 1, "perturbation": 0.05,
                          "seed": 7, "replica": 0}, "run": {"until": 2.0 * half}}
     shift = np.random.default_rng(7).uniform(-0.05, 0.05, 2 * half)
@@ -141,13 +131,8 @@ def crossing_rows(half, restitution="1"):
     # Of the left row its particle i has i lines of its own row below it, and those of the right row that it has met.
     below = (np.arange(half)[:, None] + np.arange(half)[None, :]).ravel()
     order = np.argsort(moments, kind="stable")
-    start = x, np.repeat([0.5, -0.5], half)
-    return scene, start, moments[order], places[order], below[order]
-
-
-def rows_result(folder, half):
-    scene, start, moments, places, left = crossing_rows(half)
-    result = write_result(folder / f"rows{half}.h5", scene, start, left, left + 1,
+    moments, places, left = moments[order], places[order], below[order]
+    result = write_result(folder / f"rows{half}.h5", scene, (x, np.repeat([0.5, -0.5], half)), left, left + 1,
                           np.diff(moments, prepend=0.0), np.ones(len(moments)))
     return result, moments, places, left
 
@@ -160,15 +145,11 @@ def unpack(packed):
 
 
 def write_page(folder, result, name):
-    """The smallest page with a microscope in it; (its path, the data)."""
-    data = microscope.data(result)
-    scripts = "\n".join((SOURCES / script).read_text("utf-8") for script in microscope.SCRIPTS)
-    styles = (SOURCES / "microscope.css").read_text("utf-8")
+    """A page with the microscope of a report alone; (its path, the data)."""
     path = folder / f"{name}.html"
     path.write_text("<!doctype html><meta charset=utf-8><meta name=color-scheme content='light dark'><title>microscope"
-                    f"</title><style>{styles} body{{margin:12px}}</style><div id=here></div><script>{scripts}</script>"
-                    f"<script>cradleMicroscope(document.getElementById('here'), {json.dumps(data)})</script>", "utf-8")
-    return path, data
+                    f"</title><style>body{{margin:12px}}</style>{page.microscope(result)}", "utf-8")
+    return path, microscope.data(result)
 
 
 class Data(unittest.TestCase):
@@ -187,14 +168,12 @@ class Data(unittest.TestCase):
         self.assertFalse(np.array_equal(back, array))
 
     def test_nothing_to_show_is_none(self):
+        scene = '[law]\ntype = "inelastic"\nrestitution = 0.5\n[initial]\ntype = "list"\nx = [0]\n'
         with h5py.File("empty.h5", "w") as file:
-            self.assertIsNone(microscope.data(cradle.Result("empty.h5", file)))
-            file.attrs["scene"] = '[law]\ntype = "inelastic"\nrestitution = 0.5\n[initial]\ntype = "list"\nx = [0]\n'
-            self.assertIsNone(microscope.data(cradle.Result("empty.h5", file)))
-            file.create_group("snapshots")
-            self.assertIsNone(microscope.data(cradle.Result("empty.h5", file)))
-            file.attrs["kind"] = "ensemble"
-            self.assertIsNone(microscope.data(cradle.Result("empty.h5", file)))
+            for change in (lambda: None, lambda: file.attrs.update(scene=scene),
+                           lambda: file.create_group("snapshots"), lambda: file.attrs.update(kind="ensemble")):
+                change()
+                self.assertIsNone(microscope.data(cradle.Result("empty.h5", file)))
 
     def test_same_result_same_bytes(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -207,29 +186,28 @@ class Data(unittest.TestCase):
 class InBrowser(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.folder = pathlib.Path(tempfile.mkdtemp())
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        cls.folder = pathlib.Path(folder.name)
         cls.start, cls.collisions = rational_collapse()
         with collapse_result(cls.folder, cls.collisions) as result:
             cls.page, cls.data = write_page(cls.folder, result, "collapse3")
         cls.browser = Microscope(height=760)
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.browser.__exit__()
-        shutil.rmtree(cls.folder)
+        cls.addClassCleanup(cls.browser.__exit__)
 
     def setUp(self):
         self.browser.resize(1100, 760)
         self.browser.open(self.page)
 
     def tearDown(self):
-        self.assert_quiet()
-
-    def assert_quiet(self):
         """No exception, no word on the console, no request but for the page itself."""
-        self.assertEqual(self.browser.complaints, [])
-        for address in self.browser.requests:
-            self.assertTrue(address.startswith(("file:", "about:", "blob:", "data:")), address)
+        self.assertEqual((self.browser.complaints, self.browser.outside()), ([], []))
+
+    def opened(self, result, name):
+        """Opens a page with this result; the microscope's data of it."""
+        page, data = write_page(self.folder, result, name)
+        self.browser.open(page)
+        return data
 
     def m(self, expression):
         """Of the page's handle on the microscope."""
@@ -313,11 +291,10 @@ class InBrowser(unittest.TestCase):
         """A collapse to gaps of 1e-700, whose last intervals and speeds are nothing in doubles."""
         self.collisions = rational_collapse(Fraction(1, 10**700))[1]
         with collapse_result(self.folder, self.collisions) as result:
-            page, data = write_page(self.folder, result, "deeper")
+            data = self.opened(result, "deeper")
         self.assertLess(data["collisions"], data["total"])
         self.assertGreater(data["collisions"], 325)
         self.collisions = self.collisions[:data["collisions"]]
-        self.browser.open(page)
         self.m("actions.deepest()")
         self.browser.until("cradleMicroscopeTest.readout()"
                            f".endsWith('the first {data['collisions']} collisions are here')")
@@ -499,13 +476,11 @@ class InBrowser(unittest.TestCase):
     def test_a_million_collisions(self):
         result, moments, places, left = rows_result(self.folder, 1000)
         with result:
-            page, data = write_page(self.folder, result, "million")
-        self.assertEqual(data["collisions"], 1_000_000)
-        self.assertLess(page.stat().st_size, 15e6)
-        self.browser.open(page)
-        self.assertFalse(self.view()["exact"])
+            self.assertEqual(self.opened(result, "million")["collisions"], 1_000_000)
+        self.assertLess((self.folder / "million.html").stat().st_size, 15e6)
         # What is drawn of the whole: collisions in the lens where the rows overlap, nothing beside them.
         view = self.view()
+        self.assertFalse(view["exact"])
         anchor = view["anchor"]["e"]
 
         def colourful(t, x):  # the home view's frame is the lab's
@@ -531,14 +506,11 @@ class InBrowser(unittest.TestCase):
 
     # With the program
 
-    def program_result(self, name, scene, **keys):
-        """The result of a run of the program."""
-        path = str(self.folder / f"{name}.h5")
-        sets = [f"--set={key}={value}" for key, value in keys.items()]
-        subprocess.run([find(), "run", scene, "--quiet", "-o", path, *sets], check=False, stdout=subprocess.DEVNULL)
-        result = cradle.open(path)
+    def program_result(self, name, scene, keys):
+        """The result of a run of the program, and the microscope's data of it, in an open page."""
+        result = cradle.run(scene, keys, output=self.folder / f"{name}.h5")
         self.addCleanup(result.close)
-        return result
+        return result, self.opened(result, name)
 
     def assert_gaps_of_snapshots(self, result, bound):
         """The gaps right after the collision before a snapshot, flown until then, are the snapshot's."""
@@ -591,9 +563,9 @@ class InBrowser(unittest.TestCase):
         self.assertGreaterEqual(compared, 8)
 
     def test_gaps_are_those_of_snapshots_and_charts_are_where_positions_are(self):
-        rows = {"run.until": 250, "output.snapshots": "[0, 50, 150, 250]", "output.profiles.times": "[10]"}
+        rows = {"run.until": 250, "output.snapshots": [0, 50, 150, 250], "output.profiles.times": [10]}
         ring = {"initial.particles": 200, "initial.perturbation": 0.2, "run.until": 20,
-                "output.snapshots": "[0, 1, 5, 20]"}
+                "output.snapshots": [0, 1, 5, 20]}
         inelastic = {"law.type": "inelastic", "law.restitution": 0.8}
         for name, scene, bound, keys in (
                 ("inelastic-rows", "fig2", 1e-9, rows | {"initial.particles": 400, "law.restitution": 0.98}),
@@ -603,20 +575,16 @@ class InBrowser(unittest.TestCase):
                 ("sticky-ring", "cooling", 1e-8, ring),
                 ("wet-ring", "cooling", 1e-8, ring | {"law.type": "wet", "law.loss": 0.03})):
             with self.subTest(name):
-                result = self.program_result(name, scene, **keys, **{"output.events": "true"})
-                page, data = write_page(self.folder, result, name)
+                result, data = self.program_result(name, scene, keys | {"output.events": True})
                 self.assertEqual(data["kind"], "collisions")
-                self.browser.open(page)
                 self.assert_gaps_of_snapshots(result, bound)
                 self.assert_charts_are_where_positions_are(result)
 
     def test_snapshots_alone(self):
-        result = self.program_result("shots", "fig2", **{
-            "initial.particles": 400, "run.until": 300, "output.snapshots": "[100, 200, 300]",
-            "output.profiles.times": "[10]"})
-        page, data = write_page(self.folder, result, "shots")
+        result, data = self.program_result("shots", "fig2", {
+            "initial.particles": 400, "run.until": 300, "output.snapshots": [100, 200, 300],
+            "output.profiles.times": [10]})
         self.assertEqual(data["kind"], "snapshots")
-        self.browser.open(page)
         self.browser.shot("microscope-snapshots")
         shot = result.file["snapshots/0000"]
         found = self.browser.run("""(() => { const w = cradleMicroscopeTest.world();
@@ -633,11 +601,9 @@ class InBrowser(unittest.TestCase):
             self.assertNotIn(key, offered, "of collisions, which snapshots do not have")
 
     def test_a_core_is_drawn_from_gaps_where_positions_do_not_serve(self):
-        result = self.program_result("core", "fig2", **{
-            "initial.particles": 400, "law.restitution": 0.98, "run.until": 325, "output.events": "true",
-            "output.profiles.times": "[10]"})
-        page, _ = write_page(self.folder, result, "core")
-        self.browser.open(page)
+        result, _ = self.program_result("core", "fig2", {
+            "initial.particles": 400, "law.restitution": 0.98, "run.until": 325, "output.events": True,
+            "output.profiles.times": [10]})
         count = len(result.file["events/left"])
         for depth in (1e-3, 1e-9):
             event = self.browser.run(f"""(d => d.findIndex((x, e) => e > {0.9 * count} && x > -12 &&

@@ -1,6 +1,5 @@
 """Reports as texts: whole, of one file, the same twice, with what they must show."""
 import html
-import html.parser
 import os
 import re
 import subprocess
@@ -17,38 +16,20 @@ from cradle.page.elements import enclosed, measured, number
 from small import read
 
 
-class Page(html.parser.HTMLParser):
-    """Ids, and all that names something outside."""
-
-    def __init__(self, text):
-        super().__init__()
-        self.ids, self.links, self.wanted = [], [], []
-        self.feed(text)
-
-    def handle_starttag(self, tag, attributes):
-        for name, value in attributes:
-            if name == "id":
-                self.ids.append(value)
-            elif name in ("href", "xlink:href", "src", "action", "srcset", "poster"):
-                self.links.append(value)
-                if value.startswith("#"):
-                    self.wanted.append(value[1:])
-
-
 class Reports(small.Case):
     def pages(self):
         return ((make, small.page(make)) for make in small.ALL)
 
     def test_hold_everything_and_request_nothing(self):
         for make, text in self.pages():
-            page = Page(text)
-            for link in page.links:
+            page = small.Page(text)
+            for link in page.links + page.loads:
                 self.assertRegex(link, "^(#|data:)", make.__name__)
+                if link.startswith("#"):
+                    self.assertIn(link[1:], page.ids)
             self.assertNotIn("@import", text)
             self.assertNotRegex(text, r"url\((?!#|[\"']?data:)")
             self.assertEqual(len(page.ids), len(set(page.ids)), "an id stands twice")
-            for wanted in page.wanted:
-                self.assertIn(wanted, page.ids)
             self.assertIn("default-src 'none'", text)
 
     def test_name_replicas_that_failed_and_how_to_make_one_again(self):

@@ -5,14 +5,12 @@ import re
 import shutil
 import subprocess
 import tempfile
-import time
 import unittest
-from html.parser import HTMLParser
 
 import browser
+import small
 
 SETTINGS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "..", "tools", "manual", "mkdocs.yml")
-SHOTS = os.environ.get("CRADLE_SHOTS")  # a folder: screenshots stay there
 PACKAGES = "Debian: mkdocs-material mkdocstrings-python-handlers"
 LACKING = ("Unrecognised theme", "Unrecognized theme", "plugin is not installed")
 OUTSIDE = re.compile("https?:|mailto:|data:|//")
@@ -33,26 +31,6 @@ WIDTH = """(() => {
   document.head.append(still);
   return document.documentElement.scrollWidth;
 })()"""
-
-
-class Page(HTMLParser):
-    """What a page has to be linked to, what it links to, and what is loaded with it."""
-
-    def __init__(self, path):
-        super().__init__()
-        self.names, self.links, self.loads = set(), [], []
-        with open(path, encoding="utf-8") as file:
-            self.feed(file.read())
-
-    def handle_starttag(self, tag, attrs):
-        has = dict(attrs)
-        self.names.add(has.get("id"))
-        if tag == "a" and has.get("href"):
-            self.links.append(has["href"])
-        elif tag == "link":
-            self.loads.append(has.get("href") or "")
-        if has.get("src"):
-            self.loads.append(has["src"])
 
 
 def built(folder):
@@ -77,7 +55,7 @@ class Site(unittest.TestCase):
         cls.reason = built(cls.folder)
         files = [os.path.relpath(os.path.join(top, name), cls.folder)
                  for top, _, names in os.walk(cls.folder) for name in names]
-        cls.pages = {name: Page(os.path.join(cls.folder, name))
+        cls.pages = {name: small.Page(small.read(os.path.join(cls.folder, name)))
                      for name in files if name.endswith(".html") and name != "404.html"}
         cls.sheets = [name for name in files if name.endswith(".css")]
 
@@ -98,18 +76,18 @@ class Site(unittest.TestCase):
                 with self.subTest(page=name, link=link):
                     self.assertTrue(os.path.isfile(os.path.join(self.folder, there)))
                     if part and there in self.pages:
-                        self.assertIn(part, self.pages[there].names)
+                        self.assertIn(part, self.pages[there].ids)
 
     def test_nothing_is_loaded_from_elsewhere(self):
         for name, page in self.pages.items():
             self.assertEqual([load for load in page.loads if OUTSIDE.match(load) and not load.startswith("data:")], [],
                              name)
         for name in self.sheets:
-            with open(os.path.join(self.folder, name), encoding="utf-8") as file:
-                self.assertNotRegex(file.read(), r"url\(['\"]?(https?:)?//|@import", name)
+            sheet = small.read(os.path.join(self.folder, name))
+            self.assertNotRegex(sheet, r"url\(['\"]?(https?:)?//|@import", name)
 
     def test_the_package_is_documented(self):
-        names = self.pages["python-functions.html"].names
+        names = self.pages["python-functions.html"].ids
         for name in ("cradle.run", "cradle.open", "cradle.Simulation", "cradle.resume"):
             self.assertIn(name, names)
 
@@ -122,14 +100,11 @@ class Site(unittest.TestCase):
                 for word, page in (("gap", "core/"), ("resume", "how-to-run"), ("collapse", "how-to-trust"),
                                    ("digits", "how-to-trust")):
                     reader.load(os.path.join(self.folder, "index.html"))
-                    until = time.monotonic() + 60
-                    while not (found := reader.evaluate(SEARCH % word)) and time.monotonic() < until:
-                        time.sleep(0.2)
+                    found = reader.until(SEARCH % word, 60)
                     self.assertTrue(any(page in link for link in found), f"{word}: {found}")
-                    if SHOTS:
-                        reader.photograph(os.path.join(SHOTS, f"search-{word}-{width}-{scheme}.png"), 900)
+                    reader.shot(f"search-{word}-{width}-{scheme}", 900)
             self.assertEqual(reader.complaints, [])
-            self.assertEqual([url for url in reader.requests if OUTSIDE.match(url) and not url.startswith("data:")], [])
+            self.assertEqual(reader.outside(), [])
 
     @unittest.skipUnless(browser.find(), "no Chromium (Debian: chromium)")
     def test_no_page_is_wider_than_the_window_or_a_telephone(self):
@@ -140,6 +115,5 @@ class Site(unittest.TestCase):
                     reader.resize(width)
                     with self.subTest(page=name, width=width):
                         self.assertLessEqual(reader.evaluate(WIDTH), width)
-                    if SHOTS:
-                        reader.photograph(os.path.join(SHOTS, f"{name.replace('/', '-')}-{width}.png"), 2000)
+                    reader.shot(f"{name.replace('/', '-')}-{width}", 2000)
             self.assertEqual(reader.complaints, [])

@@ -67,15 +67,12 @@ function microscopeCollisionAt(world, e, tau) {
 // Times since the anchor's collision of collisions in rising order: sums of intervals if they are close.
 function microscopeTimes(world, e, collisions) {
   const tau = new Float64Array(collisions.length);
-  let split = 0;
-  while (split < collisions.length && collisions[split] <= e) ++split;
+  const split = microscopeFirst(0, collisions.length, i => collisions[i] <= e);
   for (const [from, end, step] of [[split, collisions.length, 1], [split - 1, -1, -1]]) {
     let at = 0, last = e;
     for (let i = from; i !== end; i += step) {
-      const k = collisions[i];
-      const whole = step > 0 ? microscopeFlight(world, last, k) : -microscopeFlight(world, k, last);
-      at += whole;
-      last = k;
+      at += microscopeBetween(world, last, collisions[i]);
+      last = collisions[i];
       tau[i] = at;
     }
   }
@@ -129,7 +126,7 @@ function microscopeFollow(world, anchor, around, from, to, first, last, most) {
       all.push(list[slot]);
       if (all.length > most) return null;
     }
-  const sorted = Int32Array.from(all).sort(), collisions = sorted.filter((k, i) => i === 0 || k !== sorted[i - 1]);
+  const collisions = Int32Array.from(new Set(all)).sort();
   const tau = microscopeTimes(world, e, collisions), xi = new Float64Array(collisions.length), lines = [];
   const timeOf = (particle, slot) => slot < begin[particle] ? -Infinity : slot >= begin[particle + 1] ? Infinity :
     microscopeBetween(world, e, list[slot]);
@@ -183,8 +180,7 @@ function microscopeFollow(world, anchor, around, from, to, first, last, most) {
     }
     known.forEach(endHere);
   };
-  let split = 0;
-  while (split < collisions.length && collisions[split] <= e) ++split;
+  const split = microscopeFirst(0, collisions.length, i => collisions[i] <= e);
   const middle = around.map(({ particle, xi: place, u }) =>
     line(particle, microscopeSlotAfter(world, particle, e) - 1, 0, place, u));
   const came = new Set();  // slots at which particles entered on the way forwards: known from the previous collision on

@@ -93,8 +93,7 @@ function microscopeMass(world, particle, e) {
   for (let slot = world.begin[particle]; slot < world.begin[particle + 1] && world.list[slot] <= e; ++slot) {
     const collision = world.list[slot];
     if (world.event[collision] !== MICROSCOPE.merge) continue;
-    const own = world.left[collision] === particle ? 1 - world.share[collision] : world.share[collision];
-    mass /= own;
+    mass /= world.left[collision] === particle ? 1 - world.share[collision] : world.share[collision];
   }
   return mass;
 }
@@ -103,14 +102,13 @@ function microscopeMass(world, particle, e) {
 // particles merge or pass, the order is computed from the nearest of several stored ones.
 function microscopeOrder(world, e) {
   const { particles, ring } = world;
-  if (world.keepsOrder)
-    return { next: particle => particle + 1 < particles ? particle + 1 : ring ? 0 : -1,
-             previous: particle => particle > 0 ? particle - 1 : ring ? particles - 1 : -1 };
+  const first = { next: particle => particle + 1 < particles ? particle + 1 : ring ? 0 : -1,
+                  previous: particle => particle > 0 ? particle - 1 : ring ? particles - 1 : -1 };
+  if (world.keepsOrder) return first;
   if (!world.orders) {
-    const next = Int32Array.from({ length: particles }, (_, i) => i + 1 < particles ? i + 1 : ring ? 0 : -1);
-    const previous = Int32Array.from({ length: particles }, (_, i) => i > 0 ? i - 1 : ring ? particles - 1 : -1);
     world.stride = Math.max(1024, Math.ceil(world.n * particles / 8e6));
-    world.orders = [[next, previous]];
+    const links = link => Int32Array.from({ length: particles }, (_, i) => link(i));
+    world.orders = [[links(first.next), links(first.previous)]];
   }
   const wanted = Math.floor((e + 1) / world.stride);
   while (world.orders.length <= wanted) {

@@ -110,8 +110,7 @@ function microscopeLines(pen, chart, view, box, colours) {
     for (const i of line.points) step(chart.tau[i], chart.xi[i], false);
     step(...line.to, true);
   }
-  const dense = chart.lines.length > 150 ? 0.75 : 1;
-  pen.lineWidth = dense;
+  pen.lineWidth = chart.lines.length > 150 ? 0.75 : 1;
   pen.lineJoin = "round";
   pen.strokeStyle = colours.line;
   pen.stroke(path);

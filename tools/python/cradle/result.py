@@ -40,10 +40,10 @@ def so_far(path: str) -> Result:
     return result
 
 
-def part(kind, text: str, *names: str) -> Any:
-    """A property of a result: the first of these groups that exists, as a table of this kind."""
+def part(kind, name: str, text: str) -> Any:
+    """A property of a result: its group of this name, or that of an ensemble's statistics, as a table of this kind."""
     def read(result: Result):
-        return kind(result._group(*names), f"{result.path}: {names[0]}")
+        return kind(result._group(name, f"ensemble/{name}"), f"{result.path}: {name}")
     read.__doc__ = text
     return cached_property(read)
 
@@ -73,11 +73,8 @@ class Result:
 
     def _group(self, *names: str) -> h5py.Group | None:
         """The first of these groups that exists."""
-        for name in names:
-            found = reading(self.path, lambda name=name: self.file.get(name))
-            if isinstance(found, h5py.Group):
-                return found
-        return None
+        found = (reading(self.path, lambda name=name: self.file.get(name)) for name in names)
+        return next((group for group in found if isinstance(group, h5py.Group)), None)
 
     # ---- what was run
 
@@ -128,48 +125,45 @@ class Result:
 
     # ---- what came out
 
-    series: Table = part(Table, """Columns of shape (samples,): `time`, `energy`, `collisions`, `front_right`, ...;
-        `heaviest` is a table inside. In an ensemble each quantity is a table: `result.series.energy.mean`, `.sem`,
-        `.min`, `.max`.""", "series", "ensemble/series")
-    means: Table = part(Means, "The same; of an ensemble the means, as a run has them.", "series", "ensemble/series")
-    snapshots: Tables = part(Tables, """Particles at times: `x`, `v`, `m`, `index` of shape (particles,), `gap`,
-        `closing_speed` of shape (particles - 1,).""", "snapshots")
-    profiles: Tables = part(Tables, """Averages over bins at times: `x`, `velocity`, `density`, ... of shape (bins,); of
-        an ensemble tables.""", "profiles", "ensemble/profiles")
-    mean_profiles: Tables = part(lambda *group: Tables(*group, Means), "The same; of an ensemble the means.",
-                                 "profiles", "ensemble/profiles")
-    averages: Table = part(Table, """Averages over time in bins: `x`, `density`, `temperature`, `heat_current`, ... of
-        shape (bins,), with `_sem`; of an ensemble tables.""", "averages", "ensemble/averages")
-    histograms: Table = part(Table, """What a run counted, a table each: `result.histograms.free_flight` has `low`,
-        `high` and `count` of shape (bins,); of an ensemble `count` is a table.""", "histograms", "ensemble/histograms")
-    correlations: Table = part(Table, """Of tagged particles: `lag`, `msd` (mean-square displacement), `vacf`
-        (velocity autocorrelation) of shape (lags,), with `_sem`; of an ensemble tables.""", "correlations",
-                               "ensemble/correlations")
-    structure: Tables = part(Tables, """The structure factor at times: `k`, `s` of shape (waves,); of an ensemble `s`
-        is a table.""", "structure", "ensemble/structure")
-    structure_average: Table = part(Table, "The same, averaged over times, with `s_sem`.", "structure_average",
-                                    "ensemble/structure_average")
-    pair_distribution: Tables = part(Tables, """The pair distribution at times: `distance`, `pair_distribution` of
-        shape (bins,); of an ensemble the latter is a table.""", "pair_distribution", "ensemble/pair_distribution")
-    pair_distribution_average: Table = part(Table, "The same, averaged over times, with `pair_distribution_sem`.",
-                                            "pair_distribution_average", "ensemble/pair_distribution_average")
-    masses: Tables = part(Tables, "Distributions of cluster masses at times.", "masses")
-    events: Table = part(Table, """Every collision, shape (collisions,): `left`, `right`, `time` (add `time_low`),
-        `interval`, `closing_speed`, `kind`.""", "events")
-    sequence: Table = part(Table, """The order of the collisions (output.word), one row for each repetition: `letters`,
-        `repeats`, `first`, `time`; attributes `word`, `periods`, `kept`, `left_at`.""", "sequence")
-    replicas: Table = part(Table, "One row per replica: `index`, `outcome`, `collisions`, `energy`, ...", "replicas")
-    sweep: Table = part(Table, """One row per point: the keys that vary, then every number with `_error` and
-        `_replicas`.""", "sweep")
-    trust: Tables = part(Tables, """One table per precision of a comparison: attributes `precision`,
-        `collisions_right_until`, ...""", "trust")
-    threshold: Table = part(Table, """One row per value that was tried: `value`, `value_digits`, `outcome`, `how`,
-        `collisions`; attributes `key`, `low_digits`, `high_digits`, `low_proved`, ...""", "threshold")
-    certificate: Table = part(Table, """Of a proof: attributes `verdict`, `collisions`, `digits`, ...; columns `time`,
-        `gap`, `widest`, ...""", "certificate")
-    exact: Table = part(Table, """Decimal texts: all digits of a run in a type wider than double,
-        `result.exact.series.energy.mpmath()`, and what a proof knows, `result.exact.series.energy_low.fractions()`.""",
-                        "exact")
+    series: Table = part(Table, "series", """Columns of shape (samples,): `time`, `energy`, `collisions`, `front_right`,
+        ...; `heaviest` is a table inside. In an ensemble each quantity is a table: `result.series.energy.mean`, `.sem`,
+        `.min`, `.max`.""")
+    means: Table = part(Means, "series", "The same; of an ensemble the means, as a run has them.")
+    snapshots: Tables = part(Tables, "snapshots", """Particles at times: `x`, `v`, `m`, `index` of shape (particles,),
+        `gap`, `closing_speed` of shape (particles - 1,).""")
+    profiles: Tables = part(Tables, "profiles", """Averages over bins at times: `x`, `velocity`, `density`, ... of shape
+        (bins,); of an ensemble tables.""")
+    mean_profiles: Tables = part(lambda *group: Tables(*group, Means), "profiles",
+                                 "The same; of an ensemble the means.")
+    averages: Table = part(Table, "averages", """Averages over time in bins: `x`, `density`, `temperature`,
+        `heat_current`, ... of shape (bins,), with `_sem`; of an ensemble tables.""")
+    histograms: Table = part(Table, "histograms", """What a run counted, a table each: `result.histograms.free_flight`
+        has `low`, `high` and `count` of shape (bins,); of an ensemble `count` is a table.""")
+    correlations: Table = part(Table, "correlations", """Of tagged particles: `lag`, `msd` (mean-square displacement),
+        `vacf` (velocity autocorrelation) of shape (lags,), with `_sem`; of an ensemble tables.""")
+    structure: Tables = part(Tables, "structure", """The structure factor at times: `k`, `s` of shape (waves,); of an
+        ensemble `s` is a table.""")
+    structure_average: Table = part(Table, "structure_average", "The same, averaged over times, with `s_sem`.")
+    pair_distribution: Tables = part(Tables, "pair_distribution", """The pair distribution at times: `distance`,
+        `pair_distribution` of shape (bins,); of an ensemble the latter is a table.""")
+    pair_distribution_average: Table = part(Table, "pair_distribution_average",
+                                            "The same, averaged over times, with `pair_distribution_sem`.")
+    masses: Tables = part(Tables, "masses", "Distributions of cluster masses at times.")
+    events: Table = part(Table, "events", """Every collision, shape (collisions,): `left`, `right`, `time` (add
+        `time_low`), `interval`, `closing_speed`, `kind`.""")
+    sequence: Table = part(Table, "sequence", """The order of the collisions (output.word), one row for each repetition:
+        `letters`, `repeats`, `first`, `time`; attributes `word`, `periods`, `kept`, `left_at`.""")
+    replicas: Table = part(Table, "replicas", "One row per replica: `index`, `outcome`, `collisions`, `energy`, ...")
+    sweep: Table = part(Table, "sweep", """One row per point: the keys that vary, then every number with `_error` and
+        `_replicas`.""")
+    trust: Tables = part(Tables, "trust", """One table per precision of a comparison: attributes `precision`,
+        `collisions_right_until`, ...""")
+    threshold: Table = part(Table, "threshold", """One row per value that was tried: `value`, `value_digits`, `outcome`,
+        `how`, `collisions`; attributes `key`, `low_digits`, `high_digits`, `low_proved`, ...""")
+    certificate: Table = part(Table, "certificate", """Of a proof: attributes `verdict`, `collisions`, `digits`, ...;
+        columns `time`, `gap`, `widest`, ...""")
+    exact: Table = part(Table, "exact", """Decimal texts: all digits of a run in a type wider than double,
+        `result.exact.series.energy.mpmath()`, and what a proof knows, `result.exact.series.energy_low.fractions()`.""")
 
     @cached_property
     def points(self) -> list[Result]:

@@ -9,7 +9,8 @@ PANELS = (("density", "density $n$ ($1/l$)"), ("velocity", "mean velocity\n$u$ (
 
 
 def pictures(result, _theory, _units):
-    return [("averages", lambda axes=None: draw(result, axes))] if "x" in result.averages else []
+    if "x" in result.averages:
+        yield "averages", draw, result
 
 
 def with_error(table, name):
@@ -27,10 +28,10 @@ def draw_points(ax, x, table, name, shown=slice(None), **how):
 def exact_current(result):
     """The heat current of identical elastic particles between thermal walls at rest; without gravity. Else None."""
     temperatures = [result.setting("walls", f"{side}.temperature") for side in ("left", "right")]
-    moving = any(result.setting("walls", f"{side}.speed", 0.0) for side in ("left", "right"))
-    moving = moving or result.setting("gravity", "acceleration", 0.0) != 0
     walls = result.scene.get("walls", {})
-    moving = moving or any(walls.get(side, {}).get("motion", "none") != "none" for side in ("left", "right"))
+    moving = result.setting("gravity", "acceleration", 0.0) != 0 or any(
+        result.setting("walls", f"{side}.speed", 0.0) or walls.get(side, {}).get("motion", "none") != "none"
+        for side in ("left", "right"))
     masses = result.scene.get("initial", {}).get("masses", [1])
     if None in temperatures or moving or result.setting("law", "restitution", 0.0) != 1 or set(masses) != {1}:
         return None

@@ -15,19 +15,17 @@ def pictures(result, _theory, units):
     points = [p for p in result.points if has_core(p)]
     since = min((onset(p) for p in points), default=np.inf)
     if np.isfinite(since):
-        found = [("beyond", lambda axes=None: draw_points(points, since, units, axes))]
+        yield "beyond", draw_points, points, since, units
         if len(with_rates(points, since, units)) > 1:
-            found.append(("rates", lambda axes=None: draw_rates(points, since, units, axes)))
-        return found
+            yield "rates", draw_rates, points, since, units
     if result.points or result.replicas or not has_core(result) or not np.isfinite(onset(result)):
-        return []
-    found = [("beyond", lambda axes=None: draw_run(result, units, axes))]
+        return
+    yield "beyond", draw_run, result, units
     dense = [s for s in result.snapshots if s["time"] >= onset(result) and len(core_of(s)[0]) > 2]
     if dense and slowest(result):
-        found.append(("distributions", lambda axes=None: draw_distributions(dense, slowest(result), units, axes)))
+        yield "distributions", draw_distributions, dense, slowest(result), units
     if len(dense) >= MANY:
-        found.append(("spacetime", lambda axes=None: draw_spacetime(dense, units, axes)))
-    return found
+        yield "spacetime", draw_spacetime, dense, units
 
 
 def has_core(result):
@@ -110,7 +108,7 @@ def positive(ax, time, values, **how):
 
 # ---- a run
 
-def draw_run(result, units, axes=None):
+def draw_run(result, units, axes):
     series, scale = result.means, slowest(result)
     late = series["time"] >= onset(result)
     time = series["time"][late] / units.t
@@ -149,7 +147,7 @@ def core_of(snapshot):
     return np.arange(inside[0], inside[-1] + 1), snapshot["gap"][inside[0]:inside[-1]]
 
 
-def draw_distributions(snapshots, scale, units, axes=None):
+def draw_distributions(snapshots, scale, units, axes):
     figure, (left, right) = subplots(axes, 1, 2, figsize=(7.2, 3.4))
     chosen = snapshots[::max(1, len(snapshots) // 6)]
     for snapshot, colour in zip(chosen, shades(len(chosen))):
@@ -171,7 +169,7 @@ def draw_distributions(snapshots, scale, units, axes=None):
     return figure
 
 
-def draw_spacetime(snapshots, units, axes=None):
+def draw_spacetime(snapshots, units, axes):
     """Paths of particles that are evenly spread over the core at the end, relative to the one in its middle.
     Identical particles keep their order."""
     core, _ = core_of(snapshots[-1])
@@ -193,7 +191,7 @@ def draw_spacetime(snapshots, units, axes=None):
 
 # ---- a sweep
 
-def draw_points(points, since, units, axes=None):
+def draw_points(points, since, units, axes):
     figure, axes = stacked(axes, 3, width=7.2, height=2.7, sharex=True)
     replaced = [p for p in points if p.word("run", "collapse") in ("merge", "contact-time")]
     others = [p for p in points if p not in replaced]
@@ -220,7 +218,7 @@ def with_rates(points, since, units):
             and np.isfinite(rates(p, since, units)[0][0])]
 
 
-def draw_rates(points, since, units, axes=None):
+def draw_rates(points, since, units, axes):
     points = sorted(with_rates(points, since, units), key=slowest)
     cutoff = np.array([slowest(p) for p in points])
     found = np.array([rates(p, since, units) for p in points])

@@ -8,11 +8,9 @@ AMPLITUDE = 1071 / 152
 
 
 def pictures(result, _theory, _units):
-    if result.word("initial", "type") != "cold" or result.word("initial", "place") == "left":
-        return []
-    if result.setting("initial", "hot", 1) < 2 or result.setting("law", "restitution") != 1:
-        return []
-    return [("blast", lambda axes=None: draw(result, axes))]
+    if (result.word("initial", "type") == "cold" and result.word("initial", "place") != "left"
+            and result.setting("initial", "hot", 1) >= 2 and result.setting("law", "restitution") == 1):
+        yield "blast", draw, result
 
 
 def gas(result):
@@ -29,7 +27,7 @@ def solution(size=400):
     return xi, density, xi * v, (xi * v) ** 2 * (1 - v) / (3 * v - 1)
 
 
-def draw(result, axes=None):
+def draw(result, axes):
     energy, rho = gas(result)
     figure, axes = subplots(axes, 2, 2, figsize=(7.2, 5.6))
     draw_front(axes[0, 0], result, energy, rho)

@@ -9,15 +9,13 @@ ENOUGH = 20  # samples of a bin: of fewer the largest says nothing of the swing
 
 
 def pictures(result, _theory, units):
-    found = []
     heaviest = result.means.get("heaviest", {})
     if "x" in heaviest and hold_the_mass(result):
-        found = [("clusters", lambda axes=None: draw_clusters(result, units, axes))]
+        yield "clusters", draw_clusters, result, units
         if np.isfinite(heaviest["x"][len(heaviest["x"]) * 3 // 4:]).all(axis=1).any():
-            found.append(("scaling", lambda axes=None: draw_scaling(result, units, axes)))  # there still are two
+            yield "scaling", draw_scaling, result, units  # there still are two
     elif result.masses and result.word("initial", "type") == "ring":
-        found = [("masses", lambda axes=None: draw_masses_alone(result, units, axes))]
-    return found
+        yield "masses", draw_masses_alone, result, units
 
 
 def hold_the_mass(result):
@@ -54,7 +52,7 @@ def with_gaps(time, values, broken):
     return np.insert(time, at, time[at]), np.insert(values.astype(float), at, np.nan)
 
 
-def draw_clusters(result, units, axes=None):
+def draw_clusters(result, units, axes):
     force = result.table("force")
     tracks, broken = followed(result.means["heaviest"])
     time = result.means["time"] / units.t
@@ -135,7 +133,7 @@ def envelope(time, values, begin=0.0):
     return time, values, centre, top, late, fit
 
 
-def draw_scaling(result, units, axes=None):
+def draw_scaling(result, units, axes):
     heaviest, time = result.means["heaviest"], result.means["time"] / units.t
     x, v = heaviest["x"], heaviest["v"]
     begin = min(result.table("meetings").get("time", ()), default=0.0) / units.t  # before, each swings on its side
@@ -176,7 +174,7 @@ def draw_masses(ax, masses, units):
     beside(ax)
 
 
-def draw_masses_alone(result, units, axes=None):
+def draw_masses_alone(result, units, axes):
     figure, ax = subplots(axes, figsize=(5.6, 2.9))
     draw_masses(ax, result.masses, units)
     return figure

@@ -17,9 +17,9 @@ def cools(result):
 
 def pictures(result, theory, _units):
     if cools(result) and len(result.means.get("time", ())) > 1:
-        field = [("field", lambda axes=None: draw_field(result, axes))] if result.snapshots else []
-        return [("cooling", lambda axes=None: draw_cooling(result, theory, axes))] + field
-    return []
+        yield "cooling", draw_cooling, result, theory
+        if result.snapshots:
+            yield "field", draw_field, result
 
 
 def ring_of(result):
@@ -36,7 +36,7 @@ def sticky_law(result, time):
         return ENERGY * speed ** 2 * (speed * time / spacing) ** (-2 / 3)
 
 
-def draw_cooling(result, theory, axes=None):
+def draw_cooling(result, theory, axes):
     particles, speed, spacing = ring_of(result)
     series = result.means
     later = series["time"] * speed / spacing > 0.03  # nothing has met before
@@ -73,7 +73,7 @@ def draw_cooling(result, theory, axes=None):
     return figure
 
 
-def draw_field(result, axes=None):
+def draw_field(result, axes):
     """Velocity against position in a part of the ring: larger clusters are heavier, and velocities form a saw-tooth."""
     snapshots = thinned(result.snapshots, 4)
     figure, axes = stacked(axes, len(snapshots), height=1.8, sharex=True)

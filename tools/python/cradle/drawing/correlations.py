@@ -17,7 +17,8 @@ PANELS = (("msd", r"mean-square displacement ($l^2$)"),
 
 
 def pictures(result, _theory, _units):
-    return [("correlations", lambda axes=None: draw(result, axes))] if "lag" in result.correlations else []
+    if "lag" in result.correlations:
+        yield "correlations", draw, result
 
 
 def displacement(t):

@@ -1,6 +1,6 @@
 """Dominoes of two masses: when each heavy particle is first hit, and the closed form t = n - 1 + 1/(2c), c = m/(m +
 mu), for the mass ratios whose front is ballistic (derived in core/theory/domino.hpp; arXiv:2605.16125)."""
-from decimal import Decimal, getcontext
+from fractions import Fraction
 
 import numpy as np
 
@@ -9,11 +9,9 @@ from .style import BLUE, GREY, ORANGE, stacked
 
 def pictures(result, _theory, _units):
     initial = result.scene.get("initial", {})
-    if initial.get("type") != "cold" or initial.get("place") != "left" or len(initial.get("masses", ())) != 2:
-        return []
-    if not len(result.events.get("time", ())) or order(result) == 0:
-        return []
-    return [("domino", lambda axes=None: draw(result, axes))]
+    if (initial.get("type") == "cold" and initial.get("place") == "left" and len(initial.get("masses", ())) == 2
+            and len(result.events.get("time", ())) and order(result) != 0):
+        yield "domino", draw, result
 
 
 def order(result):
@@ -27,27 +25,25 @@ def order(result):
 def first_hits(result):
     """Heavy particles, and how much later than in the closed form each is first hit, in units of the time between
     hits."""
-    getcontext().prec = 120
     events, initial = result.events, result.scene["initial"]
-    heavy, light = (Decimal(str(mass)) for mass in initial["masses"])
-    step = Decimal(str(initial.get("spacing", 1))) / Decimal(str(initial.get("speed", 1)))
+    step = Fraction(str(initial.get("spacing", 1))) / Fraction(str(initial.get("speed", 1)))
     right = events["right"].astype(np.int64)
     before = np.maximum.accumulate(np.concatenate([[0], right[:-1]]))
     first = np.flatnonzero((right > before) & (right % 2 == 0))
-    delay = 1 - (heavy + light) / (2 * heavy)
-    time, low = events["time"].values, events["time_low"].values
-    late = [(Decimal(float(time[e])) + Decimal(float(low[e]))) / step - (int(right[e]) - delay) for e in first]
-    return right[first], np.array([float(x) for x in late])
+    time, low, delay = events["time"].values, events["time_low"].values, delay_of(result)
+    late = [(Fraction(time[e]) + Fraction(low[e])) / step - (int(right[e]) - delay) for e in first]
+    return right[first], np.array(late, float)
 
 
-def draw(result, axes=None):
+def draw(result, axes):
     particle, late = first_hits(result)
     figure, (top, below) = stacked(axes, 2, height=2.6)
     events = result.events
     some = events["right"] <= 24
     top.plot(events["time"][some], events["right"][some], "o", ms=3, color=GREY, label="collisions")
     shown = particle <= 24
-    top.plot((particle - late)[shown] - delay_of(result), particle[shown], "x", ms=5, color=ORANGE, label="closed form")
+    exactly = (particle - late)[shown] - float(delay_of(result))
+    top.plot(exactly, particle[shown], "x", ms=5, color=ORANGE, label="closed form")
     top.set(xlabel=r"time $t\,u/a$", ylabel="particle on the right")
     top.legend(loc="upper left")
     size = np.abs(late)
@@ -61,5 +57,5 @@ def draw(result, axes=None):
 
 
 def delay_of(result):
-    heavy, light = (float(mass) for mass in result.scene["initial"]["masses"])
+    heavy, light = (Fraction(str(mass)) for mass in result.scene["initial"]["masses"])
     return 1 - (heavy + light) / (2 * heavy)

@@ -8,11 +8,10 @@ from .style import BLUE, GREEN, GREY, ORANGE, lettered, subplots
 def pictures(result, theory, units):
     if (len(result.means.get("time", ())) > 1 and "energy" in result.means
             and not cools(result)):  # which has a picture of its own
-        return [("energy", lambda axes=None: draw_energy(result, theory, units, axes))]
-    return []
+        yield "energy", draw_energy, result, theory, units
 
 
-def draw_energy(result, theory, units, axes=None):
+def draw_energy(result, theory, units, axes):
     """Energy, with equation (7) dotted and the sticky gas dashed; below, the number of collisions."""
     series = result.means
     time = series["time"] / units.t

@@ -12,15 +12,13 @@ SERIES = (("energy", "energy"), ("collisions", "collisions"), ("merges", "merges
 
 def pictures(result, theory, units):
     if not result.replicas:
-        return []
-    found = []
+        return
     if len(result.series.get("time", ())) > 1:
-        found.append(("ensemble", lambda axes=None: draw_series(result, theory, units, axes)))
+        yield "ensemble", draw_series, result, theory, units
     if result.profiles:
-        found.append(("profiles", lambda axes=None: draw_profiles(result, theory, units, axes)))
+        yield "profiles", draw_profiles, result, theory, units
     if np.isfinite(result.replicas.get("collapse_time", np.array([np.nan]))).any():
-        found.append(("collapse", lambda axes=None: draw_collapse(result, units, axes)))
-    return found
+        yield "collapse", draw_collapse, result, units
 
 
 def band(ax, x, quantity, unit, colour, **line):
@@ -31,7 +29,7 @@ def band(ax, x, quantity, unit, colour, **line):
     ax.plot(x, mean, color=colour, **line)
 
 
-def draw_series(result, theory, units, axes=None):
+def draw_series(result, theory, units, axes):
     time = result.series["time"] / units.t
     scale = {"energy": units.energy, "front_right": units.x, "cloud_width": units.x}
     shown = [(name, label) for name, label in SERIES if name in result.series
@@ -72,7 +70,7 @@ def show_cooling(axes, result, time):
     axes[-1].set(xscale="log", xlim=(time[later][0], time[-1]))
 
 
-def draw_profiles(result, theory, units, axes=None):
+def draw_profiles(result, theory, units, axes):
     profiles = thinned(result.profiles, 6)
     figure, (velocity, density) = stacked(axes, 2, width=6.4, height=2.7, sharex=True)
     name = "mass_density" if result.law in ("wet", "sticky") and "mass_density" in profiles[0] else "density"
@@ -88,7 +86,7 @@ def draw_profiles(result, theory, units, axes=None):
     return figure
 
 
-def draw_collapse(result, units, axes=None):
+def draw_collapse(result, units, axes):
     times = result.replicas["collapse_time"] / units.t
     known = times[np.isfinite(times)]
     figure, (ax,) = stacked(axes, 1, height=3.0)

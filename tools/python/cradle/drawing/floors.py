@@ -11,12 +11,11 @@ LAST = 64  # samples of a ball that are shown
 def pictures(result, _theory, _units):
     points = [point for point in result.points if floor_of(point) and point.setting("gravity", "acceleration", 0.0) < 0]
     if len(points) < 3:
-        return []
+        return
     if "potential_energy" in points[0].means and len(points[0].scene["initial"].get("x", ())) == 1:
-        return [("bouncing", lambda axes=None: draw_ball(points, axes))]
-    if all(floor_of(point)["motion"] == "sawtooth" for point in points):
-        return [("column", lambda axes=None: draw_column(points, axes))]
-    return []
+        yield "bouncing", draw_ball, points
+    elif all(floor_of(point)["motion"] == "sawtooth" for point in points):
+        yield "column", draw_column, points
 
 
 def floor_of(point):
@@ -37,7 +36,7 @@ def doubling(restitution):
     return np.hypot(2 * (1 + r * r) / (1 + r) ** 2, np.pi * (1 - r) / (1 + r))
 
 
-def draw_ball(points, axes=None):
+def draw_ball(points, axes):
     figure, ax = subplots(axes, figsize=(7.4, 3.6))
     for point in points:
         floor, g = floor_of(point), -point.setting("gravity", "acceleration")
@@ -62,7 +61,7 @@ def column_of(point):
             blocks.mean(), blocks.std(ddof=1) / np.sqrt(len(blocks)))
 
 
-def draw_column(points, axes=None):
+def draw_column(points, axes):
     figure, (left, right) = subplots(axes, 1, 2, figsize=(7.4, 3.4))
     g = -points[0].setting("gravity", "acceleration")
     found = np.array([column_of(point) for point in points])

@@ -14,7 +14,8 @@ LABELS = {"free_flight": "time between two collisions of a particle ($t$)",
 
 def pictures(result, _theory, _units):
     names = [name for name in LABELS if name in result.histograms and counted(result.histograms[name])[1].any()]
-    return [("histograms", lambda axes=None: draw(result, names, axes))] if names else []
+    if names:
+        yield "histograms", draw, result, names
 
 
 def counted(table):

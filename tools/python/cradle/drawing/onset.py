@@ -9,10 +9,8 @@ from .style import shades, subplots
 
 def pictures(result, _theory, _units):
     curves = curves_of(result)
-    if not curves or max(len(points) for points in curves.values()) < 3:
-        return []
-    walled = any("walls" in point.scene for point in result.points)
-    return [("onset", lambda axes=None: draw(curves, walled, axes))]
+    if curves and max(len(points) for points in curves.values()) >= 3:
+        yield "onset", draw, curves, any("walls" in point.scene for point in result.points)
 
 
 def can_collapse(point):
@@ -32,9 +30,7 @@ def curves_of(result):
     """(N, collapsed, replicas) by increasing N for each restitution; for those that stop at a collapse."""
     found = {}
     for point in result.points:
-        if not can_collapse(point):
-            continue
-        if "collapse_time" not in point.replicas:
+        if not can_collapse(point) or "collapse_time" not in point.replicas:
             continue
         known = np.isfinite(point.replicas["collapse_time"])
         found.setdefault(point.setting("law", "restitution"), []).append(
@@ -57,7 +53,7 @@ def half(points):
     return at[k - 1] + (at[k] - at[k - 1]) * (0.5 - share[k - 1]) / (share[k] - share[k - 1])
 
 
-def draw(curves, walled, axes=None):
+def draw(curves, walled, axes):
     figure, (left, right) = subplots(axes, 1, 2, figsize=(7.4, 3.4))
     for (eps, points), colour in zip(curves.items(), shades(len(curves))):
         number = np.array([n for n, _, _ in points])

@@ -13,11 +13,10 @@ def few(result):
 
 def pictures(result, theory, units):
     if few(result) and not theory.curve("front_position")[0].size:
-        return [("particles", lambda axes=None: draw_particles(result, units, axes))]
-    return []
+        yield "particles", draw_particles, result, units
 
 
-def draw_particles(result, units, axes=None):
+def draw_particles(result, units, axes):
     """Paths, energy and collisions (at a collapse collisions alone), and how intervals (from events) or gaps
     shrink."""
     shrinking = {"interval", "closing_speed"} <= result.events.keys()

@@ -1,5 +1,6 @@
-"""Which pictures a result has, and writing them. Every kind is a module with pictures(result, theory, units): pairs
-of a name and a function that draws the picture; none if the result does not have the data."""
+"""Which pictures a result has, and writing them. Every kind is a module with pictures(result, theory, units), which
+yields a name, the function that draws the picture, and its arguments before `axes`; nothing if the result does not have
+the data."""
 import contextlib
 import os
 
@@ -26,7 +27,7 @@ def pictures_of(result, theory, units):
     last = [picture for kind in MEASURED for picture in kind.pictures(result, theory, units)]
     last += proof.certificates(result, units)
     for kind in ALONE:
-        if found := kind.pictures(result, theory, units):
+        if found := list(kind.pictures(result, theory, units)):
             return found + last
     return [picture for kind in TOGETHER for picture in kind.pictures(result, theory, units)] + last
 
@@ -36,14 +37,14 @@ def available(result, predictions):
     axes and returns the figure. predictions: the output of `cradle theory --csv`. Raises Error."""
     title = str(result.scene.get("title") or result.attributes.get("name", ""))
     with lacking(result.path):
-        return {name: drawing(result.path, name, draw, title)
-                for name, draw in pictures_of(result, Theory(predictions), Units.of(result))}
+        return {name: drawing(result.path, name, draw, arguments, title)
+                for name, draw, *arguments in pictures_of(result, Theory(predictions), Units.of(result))}
 
 
-def drawing(path, name, draw, title):
+def drawing(path, name, draw, arguments, title):
     def drawn(axes=None, dark=False, titled=True):
         with style(dark), lacking(path, f" for the {name} picture"):
-            figure = draw(axes)
+            figure = draw(*arguments, axes)
             return figure if axes is not None else finish(figure, title if titled else "")
     return drawn
 

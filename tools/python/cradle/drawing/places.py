@@ -12,19 +12,18 @@ PICTURES = (("structure_factor", "structure", "s", "k", "wave number $k$ ($1/l$)
 
 
 def pictures(result, _theory, _units):
-    if result.sweep:
-        return [(name, lambda axes=None, of=(group, *labels): draw_points(result, axes, *of))
-                for name, group, *labels in PICTURES if any(len(getattr(p, group)) for p in result.points)]
-    return [(name, lambda axes=None, of=(group, *labels): draw(result, axes, *of))
-            for name, group, *labels in PICTURES
-            if len(getattr(result, group)) or getattr(result, group + "_average")]
+    for name, group, *labels in PICTURES:
+        if result.sweep and any(len(getattr(p, group)) for p in result.points):
+            yield name, draw_points, result, group, *labels
+        elif not result.sweep and (len(getattr(result, group)) or getattr(result, group + "_average")):
+            yield name, draw, result, group, *labels
 
 
 def mean_of(quantity):
     return quantity["mean"] if "mean" in quantity else quantity
 
 
-def draw(result, axes, group, name, along, xlabel, ylabel, scales):
+def draw(result, group, name, along, xlabel, ylabel, scales, axes):
     figure, ax = subplots(axes, figsize=(5.6, 3.2))
     at = thinned(getattr(result, group))
     for table, colour in zip(at, shades(len(at))):
@@ -37,7 +36,7 @@ def draw(result, axes, group, name, along, xlabel, ylabel, scales):
     return figure
 
 
-def draw_points(result, axes, group, name, along, xlabel, ylabel, scales):
+def draw_points(result, group, name, along, xlabel, ylabel, scales, axes):
     points = [p for p in result.points if len(getattr(p, group))]
     times = thinned(getattr(points[0], group).times)
     figure, panels = stacked(axes, len(times), height=2.4, sharex=True)

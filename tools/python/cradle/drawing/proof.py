@@ -6,15 +6,16 @@ from .style import BLUE, GREEN, ORANGE, plt, subplots
 
 
 def pictures(result, _theory, _units):
-    return [("trust", lambda axes=None: draw_trust(result, axes))] if result.trust else []
+    if result.trust:
+        yield "trust", draw_trust, result
 
 
 def certificates(result, units):
-    known = len(result.certificate.get("time", ())) > 1
-    return [("certificate", lambda axes=None: draw_certificate(result, units, axes))] if known else []
+    if len(result.certificate.get("time", ())) > 1:
+        yield "certificate", draw_certificate, result, units
 
 
-def draw_trust(result, axes=None):
+def draw_trust(result, axes):
     """Digits of energy and front, and the time until which the sequence of collisions is right."""
     figure, panels = subplots(axes, 2, 1, sharex=True, figsize=(6.4, 6.4))
     for ax, name in zip(panels, ("energy", "front")):
@@ -30,7 +31,7 @@ def draw_trust(result, axes=None):
     return figure
 
 
-def draw_certificate(result, units, axes=None):
+def draw_certificate(result, units, axes):
     """The smallest gap, the largest radius of a position, and the ratio of a gap's radius to the gap; it must stay
     below 1."""
     proof = result.certificate

@@ -11,14 +11,13 @@ COLOURS = {1: SKY, 2: BLUE, 3: RED, 0: "0.8"}
 
 def pictures(result, _theory, _units):
     if not result.sweep:
-        return []
+        return
     if "first_passed" in result.sweep:
-        regimes = [("regimes", lambda axes=None: draw_regimes(result, axes))]
-        enough = any(len(point.replicas.get("index", ())) >= ENOUGH for point in result.points)
-        return [("scenarios", lambda axes=None: draw_scenarios(result, axes))] * enough + regimes
-    if any(known_times(point).size for point in result.points):
-        return [("collapse", lambda axes=None: draw_collapse(result, axes))]
-    return []
+        if any(len(point.replicas.get("index", ())) >= ENOUGH for point in result.points):
+            yield "scenarios", draw_scenarios, result
+        yield "regimes", draw_regimes, result
+    elif any(known_times(point).size for point in result.points):
+        yield "collapse", draw_collapse, result
 
 
 def wilson(hits, count):
@@ -56,7 +55,7 @@ def mean(values):
     return values.mean(), values.mean() - error, values.mean() + error
 
 
-def draw_scenarios(result, axes=None):
+def draw_scenarios(result, axes):
     figure, axes = stacked(axes, 4, height=2.1, sharex=True)
     groups = curves(result)
     for (size, points), colour, mark in zip(groups.items(), shades(len(groups)), "osD^v<>"):
@@ -77,7 +76,7 @@ def draw_scenarios(result, axes=None):
     return figure
 
 
-def draw_regimes(result, axes=None):
+def draw_regimes(result, axes):
     """The outcomes of the replicas as shares, for each loss and size of perturbation."""
     groups = curves(result)
     figure, axes = stacked(axes, len(groups), height=1.9, sharex=True)
@@ -100,7 +99,7 @@ def known_times(point):
     return finite(point.replicas.get("collapse_time", ()))
 
 
-def draw_collapse(result, axes=None):
+def draw_collapse(result, axes):
     """Distributions of t_c over replicas, in units of the time when N_c particles are engaged."""
     points = [point for point in result.points if known_times(point).size]
     figure, ax = subplots(axes, figsize=(5.2, 3.6))

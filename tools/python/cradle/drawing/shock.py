@@ -12,10 +12,9 @@ BIN_PARTICLES = 25       # bins of mean velocity are merged to hold so many: the
 
 def pictures(result, theory, units):
     if result.word("initial", "type") == "ring" or (result.law == "sticky" and result.snapshots):
-        return []  # these have pictures of their own: cooling, sticky
+        return  # these have pictures of their own: cooling, sticky
     if profiles_of(result) or len(result.snapshots) > 1 or (result.snapshots and core_of(result, units) is None):
-        return [("shock", lambda axes=None: draw_shock(result, theory, units, axes))]
-    return []
+        yield "shock", draw_shock, result, theory, units
 
 
 def profiles_of(result):
@@ -51,7 +50,7 @@ def merged(profile):
     return moment[full] / total[full], np.add.reduceat(momentum, starts)[full] / total[full]
 
 
-def draw_shock(result, theory, units, axes=None):
+def draw_shock(result, theory, units, axes):
     """Velocities of single particles, averaged velocities, density."""
     most = 8 if result.law == "wet" else 7  # a wet shock goes through one stage more
     snapshots = thinned(result.snapshots, most)

@@ -10,8 +10,7 @@ MOST_SINGLE = 40  # of the cradle: more circles could not be distinguished
 
 def pictures(result, _theory, units):
     if few(result) and result.law in ("wet", "sticky"):
-        return [("spacetime", lambda axes=None: draw_spacetime(result, units, axes))]
-    return []
+        yield "spacetime", draw_spacetime, result, units
 
 
 def legs_of(result):
@@ -42,7 +41,7 @@ def legs_of(result):
     return legs
 
 
-def draw_spacetime(result, units, axes=None):
+def draw_spacetime(result, units, axes):
     masses = np.concatenate([s["m"] for s in result.snapshots])
     whole = np.allclose(masses, masses.round()) and result.snapshots[0]["m"].sum() <= MOST_SINGLE
     panels = 2 + bool(whole)

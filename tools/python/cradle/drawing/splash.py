@@ -9,8 +9,8 @@ LAST = 0.1  # exponents are fitted over the last decade of time
 
 
 def pictures(result, _theory, _units):
-    points = [p for p in (result.points or [result]) if is_splash(p)]
-    return [("splash", lambda axes=None: draw(points, axes))] if points else []
+    if points := [p for p in (result.points or [result]) if is_splash(p)]:
+        yield "splash", draw, points
 
 
 def is_splash(point):
@@ -33,7 +33,7 @@ def fit(time, value):
     return np.polyfit(np.log(time[late]), np.log(value[late]), 1)[0]
 
 
-def draw(points, axes=None):
+def draw(points, axes):
     figure, axes = subplots(axes, 2, 2, figsize=(7.2, 5.2), sharex="col", width_ratios=(1.6, 1))
     fronts = [(p.means["time"], p.means["front_right"]) for p in points]
     inside = [energies(p) for p in points]

@@ -8,8 +8,7 @@ from .style import BLUE, GREY, ORANGE, shades, stacked, thinned
 
 def pictures(result, _theory, units):
     if result.law == "sticky" and result.word("initial", "type") == "rows" and result.snapshots:
-        return [("sticky", lambda axes=None: draw_sticky(result, units, axes))]
-    return []
+        yield "sticky", draw_sticky, result, units
 
 
 def rows_of(result):
@@ -30,7 +29,7 @@ def peak(snapshot):
     return snapshot["x"][k], snapshot["v"][k], snapshot["m"][k]
 
 
-def draw_sticky(result, units, axes=None):
+def draw_sticky(result, units, axes):
     (left, u_left), (right, u_right), (core, _) = rows_of(result)
     snapshots, profiles = thinned(result.snapshots, 5), thinned(result.mean_profiles, 5)
     times = sorted({group["time"] for group in snapshots + profiles})

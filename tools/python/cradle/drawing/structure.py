@@ -9,8 +9,8 @@ CORE_PARTICLES = 60      # but at least these
 
 
 def pictures(result, _theory, units):
-    core = core_of(result, units)
-    return [] if core is None else [("structure", lambda axes=None: draw_structure(core, units, axes))]
+    if (core := core_of(result, units)) is not None:
+        yield "structure", draw_structure, core, units
 
 
 def core_of(result, units):
@@ -45,7 +45,7 @@ def densest(gap, particles):
     return best + particles // 2, float(width[best])
 
 
-def draw_structure(snapshot, units, axes=None):
+def draw_structure(snapshot, units, axes):
     """Each panel is the rectangle in the one before; all distances are from one particle of the core."""
     gap, v = snapshot["gap"], snapshot["v"]
     inmost = max(CORE_PARTICLES, len(v) // CORE_SHARE)

@@ -15,17 +15,15 @@ MOST = 9  # numbers in one picture
 
 def pictures(result, theory, units):
     if not result.sweep:
-        return []
-    found = beyond.pictures(result, theory, units)
+        return
+    yield from beyond.pictures(result, theory, units)
     keys = varied(result)
     if len(cooling_points(result)) > 1:
-        found.append(("cooling", lambda axes=None: draw_cooling(result, axes)))
+        yield "cooling", draw_cooling, result
     if "zone_width" in result.sweep and {SPEED, LOSS} & set(keys):
-        found.append(("zone", lambda axes=None: draw_widths(result, keys, axes)))
+        yield "zone", draw_widths, result, keys
     if numbers(result) and not cooling_points(result):
-        draw = draw_map if is_grid(keys) else draw_cuts
-        found.append(("parameters", lambda axes=None: draw(result, keys, axes)))
-    return found
+        yield "parameters", draw_map if is_grid(keys) else draw_cuts, result, keys
 
 
 def is_grid(keys):
@@ -73,7 +71,7 @@ def label_of(point):
     return point.law + (rf", ${symbol}={point.setting('law', parameter):.4g}$" if parameter else "") + slow
 
 
-def draw_cooling(result, axes=None):
+def draw_cooling(result, axes):
     points = cooling_points(result)
     reference = next((p for p in points if p.law == "sticky"), None)
     figure, (top, below) = stacked(axes, 2, height=2.9, sharex=True)
@@ -108,7 +106,7 @@ def draw_cooling(result, axes=None):
 
 # ---- the width of the interaction zone
 
-def draw_widths(result, keys, axes=None):
+def draw_widths(result, keys, axes):
     """Fig. 8. The bar shows the width to u_crit; the upper bar extends to u0/|slope|, where u+ would be 0 as in
     (13)."""
     width = result.sweep["zone_width"]
@@ -156,7 +154,7 @@ def commonest(values):
 
 # ---- anything else
 
-def draw_cuts(result, keys, axes=None):
+def draw_cuts(result, keys, axes):
     """Each number of the summary against each key, with the other keys at their most frequent values (NaN: the key does
     not apply); without keys, against the number of the point."""
     names = numbers(result)
@@ -193,7 +191,7 @@ def spread(scale, values, ratio=30):
         scale("log")
 
 
-def draw_map(result, keys, axes=None):
+def draw_map(result, keys, axes):
     """Numbers in the plane of two keys; a cross marks a missing one."""
     names, (x_key, y_key) = numbers(result), sorted(keys, key=lambda key: -len(np.unique(keys[key])))
     columns = min(2 if len(names) < 5 else 3, len(names))

@@ -7,10 +7,11 @@ from .words import text
 
 def pictures(result, _theory, _units):
     table = result.table("threshold")
-    return [("threshold", lambda axes=None: draw(table, axes))] if len(table.get("value", ())) else []
+    if len(table.get("value", ())):
+        yield "threshold", draw, table
 
 
-def draw(table, axes=None):
+def draw(table, axes):
     """Distances are from the middle of the last two values, which bound the threshold: half of what lies between them
     is the least. They are differences of the decimals, since doubles do not resolve all of them."""
     about = table.attributes

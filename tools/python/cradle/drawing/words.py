@@ -8,14 +8,15 @@ MOST = 60  # words in one picture: those that exist up to the largest restitutio
 
 def pictures(result, _theory, _units):
     words = result.table("words")
-    return [("words", lambda axes=None: draw(words, axes))] if len(words.get("word", ())) else []
+    if len(words.get("word", ())):
+        yield "words", draw, words
 
 
 def text(value):
     return value.decode() if isinstance(value, bytes) else str(value)
 
 
-def draw(words, axes=None):
+def draw(words, axes):
     """One bar for each range of a word: thick where the state is stable, open where existence is not proved."""
     low, high = np.array(words["low"]), np.array(words["high"])
     order = np.argsort(high, kind="stable")[-MOST:]

@@ -9,7 +9,8 @@ EXCESS = np.sqrt(6.0)  # k = n~/n0, where (12) and (13) agree
 
 
 def pictures(result, _theory, units):
-    return [("zone", lambda axes=None: draw_zone(result, units, axes))] if "x" in result.table("zone") else []
+    if "x" in result.table("zone"):
+        yield "zone", draw_zone, result, units
 
 
 def model_width(speed, loss, spacing=1.0):
@@ -17,7 +18,7 @@ def model_width(speed, loss, spacing=1.0):
     return speed ** 2 * spacing / (loss * (2 + EXCESS))
 
 
-def draw_zone(result, units, axes=None):
+def draw_zone(result, units, axes):
     zone = result.table("zone")
     speed, loss = result.setting("initial", "speed", 0.5), result.setting("law", "loss", np.nan)
     spacing = result.setting("initial", "spacing", 1.0)

@@ -2,6 +2,8 @@
 program; then the units, and what the marks beside the numbers mean."""
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from ..result import Result
 from .elements import code, count_of, number, tag, text, valued
 
@@ -13,7 +15,8 @@ def introduction(result: Result) -> str:
         return paragraph(f"For which restitutions do {text(about['system'])} repeat one order of collisions for ever, "
                          "in an inelastic collapse? The answers, with proofs, are by Cradle, a program that computes "
                          "granular gases on a line collision by collision.")
-    sentences = f"{particles(result)}{masses(result)}{law(result)}. {surroundings(result)}{program(result)}."
+    around = "".join(surroundings(result))
+    sentences = f"{particles(result)}{masses(result)}{law(result)}. {around}{program(result)}."
     return paragraph(sentences) + paragraph(units(result), "note") + marks(result)
 
 
@@ -87,19 +90,17 @@ def masses(result: Result) -> str:
     return f", with the masses {', '.join(map(number, found))}" + ", repeated" * ("masses" in initial)
 
 
-def surroundings(result: Result) -> str:
+def surroundings(result: Result) -> Iterator[str]:
     """Sentences on gravity and walls: where they are, how they move, and what a collision with them does."""
-    sentences = []
     acceleration = given(result, "gravity", "acceleration") if "gravity" in result.scene else 0
     if acceleration:
         side = "right" if acceleration > 0 else "left"
-        sentences.append(f"Particles fall to the {side}, at {number(abs(acceleration))}&nbsp;l/t²")
+        yield f"Particles fall to the {side}, at {number(abs(acceleration))}&nbsp;l/t². "
     elif acceleration is None:
-        sentences.append("Their acceleration varies")
+        yield "Their acceleration varies. "
     for side in ("left", "right"):
         if side in result.scene.get("walls", {}):
-            sentences.append(f"The {side} wall {wall(result, side)}")
-    return "".join(f"{sentence}. " for sentence in sentences)
+            yield f"The {side} wall {wall(result, side)}. "
 
 
 def wall(result: Result, side: str) -> str:

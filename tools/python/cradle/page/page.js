@@ -13,20 +13,13 @@
       var down = head.getAttribute("aria-sort") === "ascending";
       head.parentNode.querySelectorAll("th").forEach(function (other) { other.setAttribute("aria-sort", "none"); });
       head.setAttribute("aria-sort", down ? "descending" : "ascending");
-      Array.from(rows.rows)
-        .sort(function (a, b) {
-          return (down ? -1 : 1) * compare(a.cells[column].dataset.by, b.cells[column].dataset.by);
-        })
-        .forEach(function (row) { rows.appendChild(row); });
+      var by = row => row.cells[column].dataset.by;
+      Array.from(rows.rows).sort((a, b) => (down ? -1 : 1) * compare(by(a), by(b))).forEach(row => rows.append(row));
     });
   });
   document.querySelectorAll("button.copy").forEach(function (button) {
     button.addEventListener("click", function () {
-      var range = document.createRange();
-      range.selectNodeContents(document.getElementById(button.dataset.of));
-      var chosen = getSelection();
-      chosen.removeAllRanges();
-      chosen.addRange(range);
+      getSelection().selectAllChildren(document.getElementById(button.dataset.of));
       document.execCommand("copy");
       button.textContent = "copied";
     });

@@ -20,7 +20,7 @@ from ..seal import read_seal
 from .elements import code, count_of, number, preformatted, rows, section, text
 from .captions import SEE
 from .intro import introduction
-from .numbers import last, numbers, warnings
+from .numbers import Entries, last, numbers, warnings
 from .svg import picture
 from .tables import tables
 
@@ -37,8 +37,8 @@ def page(result: Result) -> str:
     sections = [("numbers", "Numbers", numbers(result)), ("tables", "Tables", tables(result)),
                 ("pictures", "Pictures", pictures(result)), ("microscope", "Microscope", microscope(result)),
                 ("again", "Run it again", again(result)), ("cost", "Cost", rows(cost(result))),
-                ("provenance", "Provenance", provenance(result, version)), ("cite", "Cite", cite())]
-    warned = warnings(result, version.split("\n")[0].removeprefix("cradle "))
+                ("provenance", "Provenance", rows(provenance(result, version))), ("cite", "Cite", cite())]
+    warned = list(warnings(result, version.split("\n")[0].removeprefix("cradle ")))
     title = text(result.attributes.get("name", "")) + " – " + text(result.scene.get("title") or result.kind)
     links = " ".join(f'<a href="#{name}">{head}</a>' for name, head, content in sections if content)
     body = [f"<header>\n<h1>{text(result.scene.get('title') or result.attributes.get('name', ''))}</h1>\n"
@@ -157,7 +157,7 @@ def again(result: Result) -> str:
                    + preformatted(scene).replace("<pre>", '<pre id="scene">', 1))
 
 
-def cost(result: Result) -> list[tuple[str, str, str]]:
+def cost(result: Result) -> Entries:
     """The work that was done, and the program's estimate; results do not store wall times."""
     collisions = last(result.series, "collisions")
     if collisions is None and "collisions" in result.replicas:
@@ -165,40 +165,40 @@ def cost(result: Result) -> list[tuple[str, str, str]]:
     if collisions is None and result.points:
         collisions = sum(int(point.replicas["collisions"].values.sum()) for point in result.points
                        if "collisions" in point.replicas)
-    entries = [("collisions", number(collisions), "of all replicas" if result.attributes.get("replicas") else "")
-               ] if collisions is not None else []
+    if collisions is not None:
+        yield "collisions", number(collisions), "of all replicas" if result.attributes.get("replicas") else ""
     if not result.in_progress:
-        entries.append(("file", number(os.path.getsize(result.path)), "bytes"))
+        yield "file", number(os.path.getsize(result.path)), "bytes"
     else:
-        lines = of_program(["info", result.path]).splitlines()
-        entries += [(text(line[:24].strip()), text(line[24:]), "when this page was made") for line in lines
-                    if line.startswith(("time ", "collisions/s ", "computing ", "smallest gap ", "checkpoint "))]
+        for line in of_program(["info", result.path]).splitlines():
+            if line.startswith(("time ", "collisions/s ", "computing ", "smallest gap ", "checkpoint ")):
+                yield text(line[:24].strip()), text(line[24:]), "when this page was made"
     if result.kind == "run":
         with scene_file(result) as (path, _):
             expected = of_program(["check", path]).splitlines()
-        entries += [(f"{text(line.split(': ', 1)[0])} expected", text(line.split(": ", 1)[1]), "by cradle check")
-                    for line in expected if line.startswith(("time: ", "memory: "))]
-    return entries
+        for line in expected:
+            if line.startswith(("time: ", "memory: ")):
+                name, _, value = line.partition(": ")
+                yield f"{text(name)} expected", text(value), "by cradle check"
 
 
-def provenance(result: Result, version: str) -> str:
+def provenance(result: Result, version: str) -> Entries:
     about = result.attributes
-    entries = [("written by", f"cradle {text(about.get('cradle_version', ''))}",
-                f"format {text(about.get('format_version', ''))}"),
-               ("precision", text(about.get("precision", "")), ""),
-               ("scene, SHA-256", code(hashlib.sha256(result.scene_text.encode()).hexdigest()), "")]
+    yield ("written by", f"cradle {text(about.get('cradle_version', ''))}",
+           f"format {text(about.get('format_version', ''))}")
+    yield "precision", text(about.get("precision", "")), ""
+    yield "scene, SHA-256", code(hashlib.sha256(result.scene_text.encode()).hexdigest()), ""
     if "scene_checksum" in result.certificate.attributes:
-        entries.append(("scene, in the proof", code(result.certificate.attributes["scene_checksum"]), "CRC-64"))
+        yield "scene, in the proof", code(result.certificate.attributes["scene_checksum"]), "CRC-64"
     if "identity" in about:
-        entries.append(("identity", code(f"{int(about['identity']):016x}"), "of scenes and what is recorded"))
+        yield "identity", code(f"{int(about['identity']):016x}"), "of scenes and what is recorded"
     if not result.in_progress and (seal := read_seal(result.path)):
-        entries.append(("file", code(f"{seal[1]:016x}"), "its seal, CRC-64/XZ"))
+        yield "file", code(f"{seal[1]:016x}"), "its seal, CRC-64/XZ"
     for line in version.splitlines():
         name, _, value = line.partition(": ")
-        entries.append(("this page by", text(line), "") if not value else (text(name), text(value), ""))
+        yield ("this page by", text(line), "") if not value else (text(name), text(value), "")
     import matplotlib
-    entries.append(("pictures", f"matplotlib {text(matplotlib.__version__)}", ""))
-    return rows(entries)
+    yield "pictures", f"matplotlib {text(matplotlib.__version__)}", ""
 
 
 def cite() -> str:

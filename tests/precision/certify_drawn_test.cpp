@@ -4,7 +4,6 @@
 // a neighbour's, invented or made on the wrong side of the cut-off; collisions side by side are those of one by one.
 #include <ostream>
 #include <string>
-#include <vector>
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,6 @@
 // are exactly what the pair loses, and its limits are the plain law's.
 #include "cradle/core/base/elementary.hpp"
 
-#include <cmath>
 
 #include "cradle/core/laws/law.hpp"
 #include "cradle/tests/precision/every_scalar.hpp"

@@ -2,7 +2,6 @@
 // against 100 digits. (A column: shaken_walls_test.cpp.)
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <vector>
 
 #include "cradle/core/initial/walled.hpp"

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <boost/math/constants/constants.hpp>
-#include <cmath>
 #include <optional>
 #include <vector>
 

@@ -4,7 +4,6 @@
 // particles as a list; and if it is saved anywhere and continued by another run.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <vector>
 
 #include "cradle/core/chains/cluster_chain.hpp"

@@ -1,10 +1,8 @@
 // Shaken walls: the account of energy; frames; the bouncing ball and its first period doubling; a particle that rests
 // on a floor and is let go; what is refused. Gaps against positions and mirrors are in gravity_test.cpp.
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <string>
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,6 @@
 
 #include <cmath>
 #include <string>
-#include <vector>
 
 #include "cradle/core/theory/wet_energy.hpp"
 #include "cradle/core/theory/wet_zone.hpp"

@@ -7,7 +7,6 @@
 #include <gtest/gtest.h>
 
 #include <random>
-#include <string>
 
 #include "cradle/precision/double_double.hpp"
 #include "cradle/tests/core/parallel/steps/ways.hpp"

@@ -6,11 +6,14 @@
 //   rshock  x_i = (2 i - N + 1)/2 + ((h & 0x3FFFF) - 131072)/2^28,  v = +u0 for i < N/2, else -u0
 
 #include <memory>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "cradle/core/chains/gap_chain.hpp"
 #include "cradle/core/chains/position_chain.hpp"
 #include "cradle/core/engine/simulation.hpp"
+#include "cradle/core/initial/cold.hpp"
 #include "cradle/core/initial/list.hpp"
 #include "cradle/core/initial/ring.hpp"
 #include "cradle/core/initial/rows.hpp"
@@ -70,9 +73,20 @@ template <class T> Scene<T> crowds(ParticleIndex n, ParticleIndex seed) {
   return list(std::move(x), std::move(v));
 }
 // Rows with different densities and speeds, with a heavy particle between them.
-template <class T = double> Scene<T> unequal_rows() {
-  return std::make_shared<Rows<T>>(Row<T>{160, T(3) / T(4), T(1) / T(2)}, Row<T>{240, T(-1) / T(4), T(3) / T(2)},
-                                   CentralParticle<T>{T(20), T(1) / T(8)}, rshock_displacement);
+template <class T> CentralParticle<T> heavy_particle() { return {T(20), T(1) / T(8)}; }
+template <class T = double>
+Scene<T> unequal_rows(std::optional<CentralParticle<T>> centre = heavy_particle<T>(), MassPattern<T> masses = {},
+                      ParticleIndex times = 1) {
+  return std::make_shared<Rows<T>>(Row<T>{160 * times, T(3) / T(4), T(1) / T(2)},
+                                   Row<T>{240 * times, T(-1) / T(4), T(3) / T(2)}, std::move(centre),
+                                   rshock_displacement, std::move(masses));
+}
+// Masses that repeat, on rows and in a cold gas, of which so many particles move.
+inline const MassPattern<double> one_and_two({1, 2}), three_masses({1, 4.25, .5});
+inline Scene<double> cold_gas(ParticleIndex hot, HotPlace place) {
+  HotParticles<double> moving = hot == 1 ? kicked(first_hot(place, 2000, 1), 0.75)
+                                         : heated(first_hot(place, 2000, hot), hot, 10., one_and_two, 5, 2);
+  return std::make_shared<Cold<double>>(2000, 1., place, std::move(moving), rshock_displacement, one_and_two);
 }
 
 // Rows and rings as in scenes, displaced by counter-based random numbers.

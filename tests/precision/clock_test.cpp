@@ -51,6 +51,7 @@ void expect_same_run(const Scene<T>& particles, const Inelastic<T>& law, int end
   if (status != Status::reached) return;
   const auto a = configuration_at(early_run, shift), b = configuration_at(late_run, T(late + shift));
   EXPECT_TRUE(a.closing_speed == b.closing_speed);
+  EXPECT_TRUE(a.v == b.v);
   EXPECT_EQ(a.gap.size(), b.gap.size());
   EXPECT_TRUE(early_run.energy_lost() == late_run.energy_lost());
 }

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "cradle/tests/core/fixtures.hpp"
+#include "cradle/tests/core/slow_loop.hpp"
 #include "cradle/tests/core/strict_real.hpp"
 
 namespace ties_test {
@@ -13,18 +14,10 @@ namespace ties_test {
 using namespace cradle;
 using namespace cradle::test;
 
-// Against the plainest way: all gaps are searched before each collision.
 template <class T> void expect_each_the_first(ParticleIndex n, const T& restitution, int bits) {
-  const auto scene = crowds<T>(n, 5);
-  auto run = gap_run<T>(scene, Inelastic<T>(restitution), {}, T(0), {.least_queue_bits = bits});
-  const auto& chain = run.chain();
-  run.advance(T(10), [&](const Collision<T>& collision) {
-    Slot first = 0;
-    for (Slot s = chain.first(); s <= chain.last(); ++s)
-      if (chain.closing(s) > T(0) && (first == 0 || chain.due(s) < chain.due(first))) first = s;
-    ASSERT_EQ(chain.particle(first), collision.left) << "collision " << run.counts().collisions;
-  });
-  EXPECT_GT(run.counts().collisions, static_cast<std::uint64_t>(3 * n));
+  cradle::test::expect_each_the_first(
+      gap_run<T>(crowds<T>(n, 5), Inelastic<T>(restitution), {}, T(0), {.least_queue_bits = bits}), T(10),
+      static_cast<std::uint64_t>(3 * n) + 1);
 }
 
 TEST(Ties, EveryCollisionIsTheFirstByTimeAndThenFromTheLeft) {

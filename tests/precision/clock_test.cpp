@@ -13,10 +13,7 @@
 #include "cradle/tests/precision/every_scalar.hpp"
 #include "cradle/tests/precision/reference.hpp"
 
-namespace clock_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::clock_test {
 
 template <class P> using LateStart = InPrecision<P>;
 using Precisions = testing::Types<Precision<double>, Precision<double_double>, Precision<Mpfr<4>, 30>>;
@@ -85,6 +82,6 @@ TYPED_TEST(LateStart, GapsHaveTheSameBits) {
   EXPECT_TRUE(early_gaps == late_gaps);
 }
 
-}  // namespace clock_test
+}  // namespace cradle::test::clock_test
 
 #endif

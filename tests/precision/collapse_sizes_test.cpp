@@ -11,10 +11,7 @@
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/precision/every_scalar.hpp"
 
-namespace collapse_sizes_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::collapse_sizes_test {
 
 template <class P> using CollapseSizes = InPrecision<P>;
 TYPED_TEST_SUITE(CollapseSizes, WidePrecision, PrecisionName);
@@ -137,4 +134,4 @@ TEST(CollapseSizesInDouble, FourParticlesKeepTheirSymmetryToTheLastBit) {
   }
 }
 
-}  // namespace collapse_sizes_test
+}  // namespace cradle::test::collapse_sizes_test

@@ -15,9 +15,8 @@
 
 #include "cradle/precision/double_double.hpp"
 
-namespace double_double_test {
+namespace cradle::test::double_double_test {
 
-using cradle::double_double;
 using Limits = std::numeric_limits<double_double>;
 __extension__ using Wide = __int128;
 
@@ -208,6 +207,6 @@ TEST(DoubleDouble, LimitsAreWhatOperationsKeep) {
   EXPECT_TRUE(std::isnan(Limits::quiet_NaN().high()));
 }
 
-}  // namespace double_double_test
+}  // namespace cradle::test::double_double_test
 
 #endif

@@ -14,10 +14,7 @@
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/precision/every_scalar.hpp"
 
-namespace extremes_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::extremes_test {
 
 constexpr double u = 0x1p-53;
 
@@ -205,4 +202,4 @@ TYPED_TEST(SlowStandstill, EndsARunThatNoLongerAdvances) {
   EXPECT_LE(run.counts().collisions, 1200000U);
 }
 
-}  // namespace extremes_test
+}  // namespace cradle::test::extremes_test

@@ -17,10 +17,7 @@
 #include "cradle/tests/core/slow_loop.hpp"
 #include "cradle/tests/precision/every_scalar.hpp"
 
-namespace filtered_queue_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::filtered_queue_test {
 
 template <class P> using FilteredQueue = InPrecision<P>;
 using InDoubleToo = Joined<testing::Types<Precision<double>>, WidePrecision>::Types;  // where keys are exact times
@@ -231,4 +228,4 @@ TYPED_TEST(FilteredQueue, IndexBitsChangeNoBit) {
   EXPECT_GT(expect_index_bits_change_no_bit<Chain>(integers<T>(), Inelastic<T>(T(1), zero), T(2), 20), 0U);
 }
 
-}  // namespace filtered_queue_test
+}  // namespace cradle::test::filtered_queue_test

@@ -23,10 +23,7 @@
 #include "cradle/tests/precision/every_scalar.hpp"
 #include "cradle/tests/precision/reference.hpp"
 
-namespace precision_runs_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::precision_runs_test {
 
 template <class P> using EveryScalarRun = InPrecision<P>;
 TYPED_TEST_SUITE(EveryScalarRun, EveryPrecision, PrecisionName);
@@ -209,6 +206,6 @@ TEST(CollapseInDouble, TheGapPassesEveryDecadeAtTheRightCollision) {
           << row.eps << " down to " << decades[k];
 }
 
-}  // namespace precision_runs_test
+}  // namespace cradle::test::precision_runs_test
 
 #endif

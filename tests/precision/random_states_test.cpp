@@ -5,10 +5,7 @@
 #include "cradle/core/initial/poisson.hpp"
 #include "cradle/tests/precision/every_scalar.hpp"
 
-namespace random_states_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::random_states_test {
 
 constexpr ParticleIndex count = 301;
 
@@ -52,4 +49,4 @@ TYPED_TEST(RandomStates, AreThoseOfDoubleUpToRounding) {
   }
 }
 
-}  // namespace random_states_test
+}  // namespace cradle::test::random_states_test

@@ -12,11 +12,8 @@
 #include "cradle/tests/core/saved.hpp"
 #include "cradle/tests/texts.hpp"
 
-namespace state_test {
+namespace cradle::test::state_test {
 
-using namespace cradle;
-using test::gaussian_ring;
-using test::uniform_rows;
 using Dry = Inelastic<double>;
 
 template <class X> X there_and_back(const X& x) {
@@ -151,4 +148,4 @@ TEST(State, WithCollisionsThatNeverComeIsTaken) {
   expect_taken(run, begun);
 }
 
-}  // namespace state_test
+}  // namespace cradle::test::state_test

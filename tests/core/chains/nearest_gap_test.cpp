@@ -7,10 +7,7 @@
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/core/slow_loop.hpp"
 
-namespace nearest_gap_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::nearest_gap_test {
 
 // Particles 1 and 2 meet at t = 1, at 2: the neighbours, at rest, are 7 and 3 away, and 1/4 beyond the right one is
 // another.
@@ -36,4 +33,4 @@ TEST(NearestGap, AfterAMerger) {
   EXPECT_EQ(beside_first_collision(Sticky<double>{}, ClusterChain<double>(two, 0.)), far_away<double>());
 }
 
-}  // namespace nearest_gap_test
+}  // namespace cradle::test::nearest_gap_test

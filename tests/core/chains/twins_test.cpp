@@ -11,10 +11,7 @@
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/precision/reference_gas.hpp"
 
-namespace twins_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::twins_test {
 
 // With rows of speed 1/2 collapse sets in at t = 2/(1 - (4/pi) atan sqrt eps).
 const Inelastic<double> law(0.98, 1e-5);    // t = 311
@@ -104,4 +101,4 @@ TEST(Twins, WetGapsAndPositionsMakeTheSameCollisions) {
   }
 }
 
-}  // namespace twins_test
+}  // namespace cradle::test::twins_test

@@ -8,10 +8,7 @@
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/core/three_collapses.hpp"
 
-namespace collapse_policy_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::collapse_policy_test {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
@@ -220,4 +217,4 @@ TEST(ManyParticles, AProvedCollapseIsFollowedAsBefore) {
   EXPECT_NEAR(run.collapse().time.value(), 12. / 7, run.collapse().uncertainty);
 }
 
-}  // namespace collapse_policy_test
+}  // namespace cradle::test::collapse_policy_test

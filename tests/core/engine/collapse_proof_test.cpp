@@ -9,10 +9,8 @@
 #include "cradle/tests/core/between_walls.hpp"
 #include "cradle/tests/core/digits.hpp"
 
-namespace collapse_proof_test {
+namespace cradle::test::collapse_proof_test {
 
-using namespace cradle;
-using namespace cradle::test;
 using Wide = Digits<60>;
 
 const Policy<double> stop{CollapsePolicy::stop};
@@ -102,4 +100,4 @@ TEST(CollapseProof, OthersMayNotComeInTime) {
   }
 }
 
-}  // namespace collapse_proof_test
+}  // namespace cradle::test::collapse_proof_test

@@ -16,10 +16,8 @@
 #include "cradle/tests/core/digits.hpp"
 #include "cradle/tests/core/fixtures.hpp"
 
-namespace front_test {
+namespace cradle::test::front_test {
 
-using namespace cradle;
-using namespace cradle::test;
 using Wide = Digits<50>;
 
 constexpr double u = std::numeric_limits<double>::epsilon() / 2;
@@ -110,4 +108,4 @@ TEST_P(Fronts, ReachFarthestAtTheTabulatedTurnover) {
   EXPECT_EQ(run.chain().account().simultaneous, GetParam().simultaneous);
 }
 
-}  // namespace front_test
+}  // namespace cradle::test::front_test

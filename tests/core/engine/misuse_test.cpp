@@ -12,10 +12,7 @@
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/texts.hpp"
 
-namespace misuse_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::misuse_test {
 
 constexpr double infinity = std::numeric_limits<double>::infinity(), nan = std::numeric_limits<double>::quiet_NaN();
 
@@ -163,4 +160,4 @@ TEST(Misuse, RingsOfNumbersThatAreNone) {
   expect_refused([] { Ring<double>(3, -2, 1, still, still); }, "length or variance", "length -2");
 }
 
-}  // namespace misuse_test
+}  // namespace cradle::test::misuse_test

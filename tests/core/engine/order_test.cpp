@@ -7,10 +7,7 @@
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/core/rational.hpp"
 
-namespace order_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::order_test {
 
 // Gaps 0 and 2 close at t = 1 and `late` at closing speed 1; the gap between them is `between` wide and at rest.
 Scene<Rational> four_particles(const Rational& late, const Rational& between) {
@@ -74,4 +71,4 @@ TEST(Order, InDoubleTheSameViolationIsCounted) {
   EXPECT_NEAR(chain.account().first_order_lost.gap, -0.135, 8 * std::numeric_limits<double>::epsilon());
 }
 
-}  // namespace order_test
+}  // namespace cradle::test::order_test

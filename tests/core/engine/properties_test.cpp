@@ -14,10 +14,7 @@
 #include "cradle/tests/core/compare.hpp"
 #include "cradle/tests/core/fixtures.hpp"
 
-namespace properties_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::properties_test {
 
 constexpr double u = std::numeric_limits<double>::epsilon() / 2;
 constexpr double largest_closing_speed = 2;  // of all scenes here
@@ -143,4 +140,4 @@ TEST(Properties, FewParticlesOrNoneInMotion) {
       << "(1 + eps)/2 reaches the third particle, then again";
 }
 
-}  // namespace properties_test
+}  // namespace cradle::test::properties_test

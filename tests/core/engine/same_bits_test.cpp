@@ -12,10 +12,7 @@
 #include "cradle/tests/core/compare.hpp"
 #include "cradle/tests/core/saved.hpp"
 
-namespace same_bits_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::same_bits_test {
 
 using Dry = Inelastic<double>;
 using Gaps = GapChain<double>;
@@ -315,4 +312,4 @@ TEST(SameBits, WithAnyWidthOfTheIndexInCrowdsOfTies) {
   }
 }
 
-}  // namespace same_bits_test
+}  // namespace cradle::test::same_bits_test

@@ -11,10 +11,7 @@
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/texts.hpp"
 
-namespace simulation_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::simulation_test {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -176,4 +173,4 @@ TEST(Cadence, StepsStopAtTheTimeRequestedLast) {
   EXPECT_FALSE(run.step()) << "there is none before that time";
 }
 
-}  // namespace simulation_test
+}  // namespace cradle::test::simulation_test

@@ -7,10 +7,7 @@
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/core/rational.hpp"
 
-namespace standstill_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::standstill_test {
 
 // Reviews at which offsets from a moving origin advance, and the time since the start does not.
 std::uint64_t collisions_until_it_ends(std::uint64_t active, double followed = 1) {
@@ -62,4 +59,4 @@ TEST(Standstill, ParticlesInTouchPartByACutOff) {
   EXPECT_EQ(without.advance(2), Status::exhausted) << "they never do";
 }
 
-}  // namespace standstill_test
+}  // namespace cradle::test::standstill_test

@@ -13,10 +13,7 @@
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/core/rational.hpp"
 
-namespace sticky_gas_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::sticky_gas_test {
 
 // Up to 24 particles at multiples of 1/8 with few different velocities: particles meet three and more at a time. Every
 // tenth case has all of them meet in one point at t = 1.
@@ -181,4 +178,4 @@ TEST(StickyGas, CoolsByTheTwoThirdsLaw) {
   }
 }
 
-}  // namespace sticky_gas_test
+}  // namespace cradle::test::sticky_gas_test

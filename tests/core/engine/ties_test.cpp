@@ -9,10 +9,7 @@
 #include "cradle/tests/core/slow_loop.hpp"
 #include "cradle/tests/core/strict_real.hpp"
 
-namespace ties_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::ties_test {
 
 template <class T> void expect_each_the_first(ParticleIndex n, const T& restitution, int bits) {
   cradle::test::expect_each_the_first(
@@ -50,4 +47,4 @@ TEST(Ties, ACrowdOfThousandsIsNotSortedAnewForEveryCollision) {
   EXPECT_LT(Counted::looks, 8 * run.counts().collisions);
 }
 
-}  // namespace ties_test
+}  // namespace cradle::test::ties_test

@@ -11,8 +11,7 @@
 
 #include "cradle/core/base/counter_rng.hpp"
 
-namespace cradle::test {
-namespace histogram_test {
+namespace cradle::test::histogram_test {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
@@ -63,5 +62,4 @@ TEST(FixedBins, QuantilesAreRightToABin) {
   EXPECT_TRUE(std::isnan(Histograms(bins, 1).quantile(0, 0.5)));
 }
 
-}  // namespace histogram_test
-}  // namespace cradle::test
+}  // namespace cradle::test::histogram_test

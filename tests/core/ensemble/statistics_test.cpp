@@ -17,8 +17,7 @@
 #include "cradle/tests/core/rational.hpp"
 #include "cradle/tests/core/replicas.hpp"
 
-namespace cradle::test {
-namespace statistics_test {
+namespace cradle::test::statistics_test {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
@@ -223,5 +222,4 @@ TEST(Statistics, MissingReplicasAreFoundWhereverTheyAre) {
   }
 }
 
-}  // namespace statistics_test
-}  // namespace cradle::test
+}  // namespace cradle::test::statistics_test

@@ -8,10 +8,7 @@
 #include "cradle/core/observe/configuration_statistics.hpp"
 #include "cradle/tests/core/segmented.hpp"
 
-namespace mass_pattern_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::mass_pattern_test {
 
 const auto &three = three_masses, &two = one_and_two;
 
@@ -149,4 +146,4 @@ TEST(MassPattern, BadOnesAreRefused) {
                std::invalid_argument);
 }
 
-}  // namespace mass_pattern_test
+}  // namespace cradle::test::mass_pattern_test

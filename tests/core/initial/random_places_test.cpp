@@ -14,10 +14,7 @@
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/core/observe/placed.hpp"
 
-namespace random_places_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::random_places_test {
 
 constexpr ParticleIndex many = 20000;
 
@@ -280,4 +277,4 @@ TEST(PoissonPositions, DiffuseAsJepsenComputed) {
   }
 }
 
-}  // namespace random_places_test
+}  // namespace cradle::test::random_places_test

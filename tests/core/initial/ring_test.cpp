@@ -16,10 +16,7 @@
 #include "cradle/tests/core/rational.hpp"
 #include "cradle/tests/precision/reference_gas.hpp"
 
-namespace ring_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::ring_test {
 
 // Particles at multiples of 1/64 on a ring of circumference n, integer velocities: ties happen.
 template <class T> std::shared_ptr<const List<T>> random_ring(std::mt19937& random, int n, bool equal_masses) {
@@ -214,4 +211,4 @@ TEST(Ring, RefusesWhatIsNoRing) {
   EXPECT_THROW(List<double>({0, 1}, {0, 0}, {}, 1.0), std::invalid_argument);
 }
 
-}  // namespace ring_test
+}  // namespace cradle::test::ring_test

@@ -11,10 +11,7 @@
 
 #include "cradle/tests/core/between_walls.hpp"
 
-namespace resting_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::resting_test {
 
 struct Met {
   ParticleIndex left;
@@ -178,4 +175,4 @@ TEST(Resting, WhereTheyCannotRestIsSaid) {
   EXPECT_NO_THROW(between(-1, list<double>({1}, {0}), wall(0, sine, 0.5, 0, 0.1), wall(3, sine, 1, 0, 0.1)));
 }
 
-}  // namespace resting_test
+}  // namespace cradle::test::resting_test

@@ -9,10 +9,7 @@
 #include "cradle/core/chains/cluster_chain.hpp"
 #include "cradle/tests/core/between_walls.hpp"
 
-namespace shaken_walls_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::shaken_walls_test {
 
 // A column on a shaken floor for a long time: the accounts and the closure drift by rounding alone.
 TEST(ShakenWalls, AccountsHoldForLong) {
@@ -209,4 +206,4 @@ TEST(ShakenWalls, WhereTheyCannotBeIsSaid) {
   EXPECT_THROW(ClusterChain<double>(with_sine, 0.), std::invalid_argument);
 }
 
-}  // namespace shaken_walls_test
+}  // namespace cradle::test::shaken_walls_test

@@ -11,10 +11,7 @@
 #include "cradle/tests/core/segmented.hpp"
 #include "cradle/tests/precision/reference_gas.hpp"
 
-namespace walls_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::walls_test {
 
 // Against a gas that searches all pairs before every collision.
 TEST(Walls, MakeTheCollisionsOfExactArithmetic) {
@@ -198,4 +195,4 @@ TEST(Walls, WhereTheyCannotBeIsSaid) {
   EXPECT_NO_THROW(between<double>(0, particles, Wall<double>{0.}, Wall<double>{3.}));
 }
 
-}  // namespace walls_test
+}  // namespace cradle::test::walls_test

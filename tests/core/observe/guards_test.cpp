@@ -9,10 +9,7 @@
 #include "cradle/core/observe/guards.hpp"
 #include "cradle/tests/core/fixtures.hpp"
 
-namespace guards_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::guards_test {
 
 using Dry = Inelastic<double>;
 
@@ -139,4 +136,4 @@ TEST(Guards, FindAParticleBeyondAWall) {
   EXPECT_EQ(on_right->particle, 1);
 }
 
-}  // namespace guards_test
+}  // namespace cradle::test::guards_test

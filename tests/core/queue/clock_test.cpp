@@ -11,10 +11,8 @@
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/core/slow_loop.hpp"
 
-namespace clock_test {
+namespace cradle::test::clock_test {
 
-using namespace cradle;
-using namespace cradle::test;
 using Wide = Digits<100>;
 
 constexpr double start = 1e12;
@@ -77,4 +75,4 @@ TEST(Clock, OffsetsAndTimesAreInverse) {
   EXPECT_NEAR(clock.elapsed(1e-15), 1e-9 + 1e-12 + 1e-15, 1e-24);
 }
 
-}  // namespace clock_test
+}  // namespace cradle::test::clock_test

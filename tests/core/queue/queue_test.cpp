@@ -8,10 +8,7 @@
 
 #include "cradle/tests/core/sorted_list_queue.hpp"
 
-namespace queue_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::queue_test {
 
 constexpr double never = EventQueue::never;
 
@@ -123,4 +120,4 @@ TEST(Queue, RoundedKeysAreCloseWithinTheirRounding) {
   EXPECT_TRUE(rounded.close(rounded.key_of(5), 6));
 }
 
-}  // namespace queue_test
+}  // namespace cradle::test::queue_test

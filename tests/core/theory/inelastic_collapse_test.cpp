@@ -13,10 +13,9 @@
 #include "cradle/tests/core/digits.hpp"
 #include "cradle/tests/core/three_collapses.hpp"
 
-namespace inelastic_collapse_test {
+namespace cradle::test::inelastic_collapse_test {
 
 using namespace cradle::theory;
-using namespace cradle::test;
 
 // Identities evaluated in Wide: a few hundred roundings of 2^-168, some after factors of up to 1e4.
 const Wide tiny = pow(Wide(10), -44);
@@ -112,4 +111,4 @@ TEST(Collapse, SequenceThatPartsEnds) {
   EXPECT_FALSE(sequence.advance());
 }
 
-}  // namespace inelastic_collapse_test
+}  // namespace cradle::test::inelastic_collapse_test

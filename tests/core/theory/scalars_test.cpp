@@ -15,13 +15,9 @@
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/core/strict_real.hpp"
 
-namespace theory_scalars_test {
+namespace cradle::test::theory_scalars_test {
 
-using namespace cradle;
 using namespace cradle::theory;
-using cradle::test::expect_close;
-using cradle::test::StrictReal;
-using cradle::test::Wide;
 
 template <class... T> std::vector<double> as_doubles(const T&... numbers) { return {to_double(numbers)...}; }
 
@@ -108,4 +104,4 @@ TYPED_TEST(BuiltIn, AgreesWithWideToItsOwnPrecision) {
   expect_close(three_particle_collapse_limit<T>(), three_particle_collapse_limit<Wide>(), few, "7 - 4 sqrt 3");
 }
 
-}  // namespace theory_scalars_test
+}  // namespace cradle::test::theory_scalars_test

@@ -12,10 +12,8 @@
 #include "cradle/core/theory/sticky_shock.hpp"
 #include "cradle/tests/core/fixtures.hpp"
 
-namespace sticky_shock_test {
+namespace cradle::test::sticky_shock_test {
 
-using namespace cradle;
-using namespace cradle::test;
 using theory::StickyShock;
 using Wide = boost::multiprecision::cpp_bin_float_50;
 
@@ -173,4 +171,4 @@ TEST(StickyCooling, ConstantsAreMomentsOfChernoffsDistribution) {
   EXPECT_NEAR(theory::sticky_cooling_energy, clusters / 6, u);
 }
 
-}  // namespace sticky_shock_test
+}  // namespace cradle::test::sticky_shock_test

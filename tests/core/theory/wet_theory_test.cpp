@@ -13,10 +13,9 @@
 #include "cradle/core/theory/wet_zone.hpp"
 #include "cradle/tests/core/wet_reference.hpp"
 
-namespace wet_theory_test {
+namespace cradle::test::wet_theory_test {
 
 using namespace cradle::theory;
-using namespace cradle::test;
 
 // ---- the criterion ----
 
@@ -229,4 +228,4 @@ TEST(WetFront, HasTheScalesOfItsUnits) {
   EXPECT_EQ(larger.force(4 * 0.7), zone.force(0.7) * 2 * 4 / 64);
 }
 
-}  // namespace wet_theory_test
+}  // namespace cradle::test::wet_theory_test

@@ -59,9 +59,9 @@ template <class T> Scene<T> rshock(ParticleIndex n, const T& speed) {
 template <class T> Scene<T> rshock(ParticleIndex n) { return rshock(n, T(T(1) / T(2))); }
 
 // Without displacements: many pairs collide at one time.
+inline std::int64_t still(ParticleIndex) { return 0; }
 template <class T = double> Scene<T> lattice_rows(ParticleIndex n) {
-  return std::make_shared<Rows<T>>(
-      symmetric_rows<T>(n, T(T(1) / T(2)), T(1), [](ParticleIndex) { return std::int64_t{0}; }));
+  return std::make_shared<Rows<T>>(symmetric_rows<T>(n, T(T(1) / T(2)), T(1), still));
 }
 // At integers, with the speeds -1, 0 and 1 by chance: crowds of them collide at one time.
 template <class T> Scene<T> crowds(ParticleIndex n, ParticleIndex seed) {
@@ -90,8 +90,9 @@ inline Scene<double> cold_gas(ParticleIndex hot, HotPlace place) {
 }
 
 // Rows and rings as in scenes, displaced by counter-based random numbers.
-inline Scene<double> uniform_rows(ParticleIndex count) {
-  return std::make_shared<Rows<double>>(symmetric_rows<double>(count, 0.5, 1, uniform_displacement(0.05, 3, 0)));
+inline Scene<double> uniform_rows(ParticleIndex count, double perturbation = 0.05, std::uint64_t seed = 3) {
+  return std::make_shared<Rows<double>>(
+      symmetric_rows<double>(count, 0.5, 1, uniform_displacement(perturbation, seed, 0)));
 }
 inline Scene<double> gaussian_ring(ParticleIndex count, double length, std::uint64_t seed = 3,
                                    double perturbation = 0.05) {

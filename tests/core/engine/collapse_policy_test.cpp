@@ -187,8 +187,7 @@ TEST(CollapsePolicies, SqueezedParticlesAreNotTakenForACollapse) {
 // to there the same as with a gap that is given.
 TEST(ManyParticles, EndWithoutAProof) {
   for (const double restitution : {.5, .8}) {
-    const Scene<double> rows =
-        std::make_shared<Rows<double>>(symmetric_rows<double>(200, .5, 1., uniform_displacement(.3, 1, 0)));
+    const Scene<double> rows = uniform_rows(200, .3, 1);
     auto run = gap_run(rows, Inelastic<double>(restitution), {CollapsePolicy::stop, 0, {}});
     ASSERT_EQ(run.advance(1e4), Status::collapsed);
     EXPECT_FALSE(run.collapse().settled);

@@ -29,7 +29,6 @@ void expect_refused(const std::function<void()>& construct, const std::string& w
 Scene<double> ring_of(std::vector<double> x, std::vector<double> v, double circumference) {
   return std::make_shared<List<double>>(std::move(x), std::move(v), std::vector<double>{}, circumference);
 }
-std::int64_t still(ParticleIndex) { return 0; }
 
 TEST(Misuse, UnequalMassesInAChainForIdenticalOnes) {
   const auto particles = list<double>({0, 1, 2}, {1, 0, -1}, {3, 3, 5});

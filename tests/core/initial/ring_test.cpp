@@ -8,11 +8,8 @@
 #include <random>
 
 #include "cradle/core/chains/cluster_chain.hpp"
-#include "cradle/core/chains/gap_chain.hpp"
-#include "cradle/core/engine/simulation.hpp"
-#include "cradle/core/initial/list.hpp"
-#include "cradle/core/initial/ring.hpp"
 #include "cradle/core/observe/configuration_statistics.hpp"
+#include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/core/rational.hpp"
 #include "cradle/tests/precision/reference_gas.hpp"
 
@@ -204,7 +201,6 @@ TEST(Ring, PortableLogarithm) {
 }
 
 TEST(Ring, RefusesWhatIsNoRing) {
-  const auto still = [](ParticleIndex) { return std::int64_t{0}; };
   EXPECT_THROW(Ring<double>(0, 1.0, 1.0, still, still), std::invalid_argument);
   EXPECT_THROW(Ring<double>(3, 0.0, 1.0, still, still), std::invalid_argument);
   EXPECT_THROW(Ring<double>(3, 1.0, 0.0, still, still), std::invalid_argument);

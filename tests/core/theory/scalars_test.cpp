@@ -70,7 +70,6 @@ TEST(TheoriesInAStrictScalar, OfStickyShocksAndGases) {
     const auto centre = sticky_centre(shock, T(17));
     auto numbers = as_doubles(centre.mass, centre.position, centre.velocity, centre.from_left, centre.from_right,
                               centre.energy_lost, late_growth(shock), late_velocity(shock), late_power(shock));
-    const auto still = [](ParticleIndex) { return std::int64_t{0}; };
     const auto ring = std::make_shared<Ring<T>>(60, T(60), T(1), gaussian_velocity(2, 0), still);
     for (const int t : {0, 1, 7, 50, 1000})
       for (const test::Scene<T>& particles : {test::rmix<T>(100), test::rshock<T>(100), test::Scene<T>(ring)}) {

@@ -16,8 +16,7 @@
 
 namespace cradle::test {
 
-template <class T> using FallingGapsIn = GapChain<T, IndividualMasses<T>, Gravity<T>>;
-using FallingGaps = FallingGapsIn<double>;
+using FallingGaps = GapChain<double, IndividualMasses<double>, Gravity<double>>;
 using FallingPositions = PositionChain<double, Gravity<double>>;
 using Shaking = std::shared_ptr<const WallMotion<double>>;
 
@@ -43,10 +42,9 @@ inline Wall<double> wall(double position, Shaking motion, double restitution = 1
 }
 inline constexpr Shape shapes[] = {Shape::sawtooth, Shape::parabola, Shape::sine};
 
-template <class T, class Law>
-Simulation<T, Law, FallingGapsIn<T>> falling(const Scene<T>& particles, const Law& law,
-                                             const std::type_identity_t<T>& start = T(0)) {
-  return {law, FallingGapsIn<T>(particles, start)};
+template <class Law>
+Simulation<double, Law, FallingGaps> falling(const Scene<double>& particles, const Law& law, double start = 0) {
+  return {law, FallingGaps(particles, start)};
 }
 template <class Law>
 Simulation<double, Law, FallingPositions> falling_positions(const Scene<double>& particles, const Law& law) {

@@ -157,7 +157,8 @@ TEST(CertifyGravity, ALineFromAWallHoldsAllThatItsTimeMayBe) {
 
 // Of rows few particles are held; the others fall as well.
 TEST(CertifyGravity, ParticlesThatAreNotHeldFallToo) {
-  const auto rows = std::make_shared<Rows<B>>(Row<B>{20, B(1), B(1)}, Row<B>{10, B(-0.5), B(1)}, std::nullopt, still);
+  const auto rows = std::make_shared<Rows<B>>(Row<B>{20, B(1), B(1)}, Row<B>{10, B(-0.5), B(1)}, std::nullopt,
+                                              [](ParticleIndex) { return std::int64_t{0}; });
   const Checker<B> checker(std::make_shared<Walled<B>>(rows, std::nullopt, std::nullopt, B(0.75)), elastic());
   const CertainState<B> now = checker.state_at(B(0.25));
   ASSERT_FALSE(now.doubt);

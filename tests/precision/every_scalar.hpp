@@ -73,9 +73,6 @@ template <class Reference, class T> Reference sum_of_doubles(T x) {
   return sum;
 }
 
-// In 100 digits.
-template <class T> bin_float exact(const T& x) { return sum_of_doubles<bin_float>(x); }
-
 // Doubles exactly, decimals as the type rounds them.
 template <class T> std::vector<T> numbers(const std::vector<double>& values) {
   std::vector<T> all;

@@ -4,13 +4,21 @@
 
 #include <vector>
 
-#include "cradle/tests/core/between_walls.hpp"
+#include "cradle/core/initial/walled.hpp"
+#include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/precision/every_scalar.hpp"
 
 namespace cradle::test::gravity_in_types_test {
 
+template <class T> using Falling = GapChain<T, IndividualMasses<T>, Gravity<T>>;
+template <class T> using FallingRun = Simulation<T, Inelastic<T>, Falling<T>>;
+
+template <class T> Scene<T> under(const T& acceleration, const Scene<T>& particles, const Wall<T>& floor) {
+  return std::make_shared<Walled<T>>(particles, floor, std::nullopt, acceleration);
+}
 template <class T> std::vector<T> bounces(const T& acceleration, const T& height, std::size_t count, const T& until) {
-  auto run = falling(between<T>(T(-acceleration), list<T>({height}, {T(0)}), Wall<T>{T(0)}), Inelastic<T>(T(1)));
+  const auto ball = under<T>(T(-acceleration), list<T>({height}, {T(0)}), Wall<T>{T(0)});
+  FallingRun<T> run(Inelastic<T>(T(1)), Falling<T>(ball, T(0)));
   std::vector<T> times;
   EXPECT_EQ(run.advance(until, [&](const Collision<T>& c) { times.push_back(c.time.value()); }), Status::reached);
   EXPECT_EQ(times.size(), count);
@@ -40,6 +48,7 @@ TYPED_TEST(FallIn, ABallBouncesAThousandTimesToTheLastBit) {
 }
 
 using Reference = bin_float;
+template <class T> Reference exact(const T& x) { return sum_of_doubles<Reference>(x); }
 
 struct ByDigits {
   bool meets;

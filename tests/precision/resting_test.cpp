@@ -7,7 +7,8 @@
 #include <optional>
 #include <vector>
 
-#include "cradle/tests/core/between_walls.hpp"
+#include "cradle/core/initial/walled.hpp"
+#include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/precision/every_scalar.hpp"
 
 namespace cradle::test::resting_in_types_test {
@@ -158,8 +159,10 @@ template <class T> std::vector<Brute::Event> events_of(const Setup& setup) {
   if (setup.shape)
     floor.motion =
         std::make_shared<WallMotion<T>>(*setup.shape, exactly<T>(setup.amplitude), exactly<T>(frequency), T(0));
-  const auto pile = list(numbers<T>(places), numbers<T>(velocities), numbers<T>(masses));
-  auto run = falling(between<T>(T(-1), pile, floor), Inelastic<T>(exactly<T>(setup.restitution)));
+  const std::shared_ptr<const Particles<T>> particles = std::make_shared<Walled<T>>(
+      list(numbers<T>(places), numbers<T>(velocities), numbers<T>(masses)), floor, std::nullopt, T(-1));
+  using Chain = GapChain<T, IndividualMasses<T>, Gravity<T>>;
+  Simulation<T, Inelastic<T>, Chain> run(Inelastic<T>(exactly<T>(setup.restitution)), Chain(particles, T(0)));
   std::vector<Brute::Event> events;
   EXPECT_EQ(run.advance(T(static_cast<int>(until)),
                         [&](const Collision<T>& c) {

@@ -17,12 +17,9 @@
 #include "cradle/tests/places.hpp"
 #include "cradle/tests/texts.hpp"
 
-namespace architecture_test {
+namespace cradle::test::architecture_test {
 
 namespace fs = std::filesystem;
-using cradle::test::build_folder;
-using cradle::test::has;
-using cradle::test::source_folder;
 
 struct Line {
   std::string file;
@@ -185,4 +182,4 @@ TEST(Architecture, EveryHeaderIsGuardedAndOpensWithItsIdea) {
   }
 }
 
-}  // namespace architecture_test
+}  // namespace cradle::test::architecture_test

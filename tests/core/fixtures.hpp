@@ -6,11 +6,14 @@
 //   rshock  x_i = (2 i - N + 1)/2 + ((h & 0x3FFFF) - 131072)/2^28,  v = +u0 for i < N/2, else -u0
 
 #include <memory>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "cradle/core/chains/gap_chain.hpp"
 #include "cradle/core/chains/position_chain.hpp"
 #include "cradle/core/engine/simulation.hpp"
+#include "cradle/core/initial/cold.hpp"
 #include "cradle/core/initial/list.hpp"
 #include "cradle/core/initial/ring.hpp"
 #include "cradle/core/initial/rows.hpp"
@@ -56,9 +59,9 @@ template <class T> Scene<T> rshock(ParticleIndex n, const T& speed) {
 template <class T> Scene<T> rshock(ParticleIndex n) { return rshock(n, T(T(1) / T(2))); }
 
 // Without displacements: many pairs collide at one time.
+inline std::int64_t still(ParticleIndex) { return 0; }
 template <class T = double> Scene<T> lattice_rows(ParticleIndex n) {
-  return std::make_shared<Rows<T>>(
-      symmetric_rows<T>(n, T(T(1) / T(2)), T(1), [](ParticleIndex) { return std::int64_t{0}; }));
+  return std::make_shared<Rows<T>>(symmetric_rows<T>(n, T(T(1) / T(2)), T(1), still));
 }
 // At integers, with the speeds -1, 0 and 1 by chance: crowds of them collide at one time.
 template <class T> Scene<T> crowds(ParticleIndex n, ParticleIndex seed) {
@@ -70,14 +73,26 @@ template <class T> Scene<T> crowds(ParticleIndex n, ParticleIndex seed) {
   return list(std::move(x), std::move(v));
 }
 // Rows with different densities and speeds, with a heavy particle between them.
-template <class T = double> Scene<T> unequal_rows() {
-  return std::make_shared<Rows<T>>(Row<T>{160, T(3) / T(4), T(1) / T(2)}, Row<T>{240, T(-1) / T(4), T(3) / T(2)},
-                                   CentralParticle<T>{T(20), T(1) / T(8)}, rshock_displacement);
+template <class T> CentralParticle<T> heavy_particle() { return {T(20), T(1) / T(8)}; }
+template <class T = double>
+Scene<T> unequal_rows(std::optional<CentralParticle<T>> centre = heavy_particle<T>(), MassPattern<T> masses = {},
+                      ParticleIndex times = 1) {
+  return std::make_shared<Rows<T>>(Row<T>{160 * times, T(3) / T(4), T(1) / T(2)},
+                                   Row<T>{240 * times, T(-1) / T(4), T(3) / T(2)}, std::move(centre),
+                                   rshock_displacement, std::move(masses));
+}
+// Masses that repeat, on rows and in a cold gas, of which so many particles move.
+inline const MassPattern<double> one_and_two({1, 2}), three_masses({1, 4.25, .5});
+inline Scene<double> cold_gas(ParticleIndex hot, HotPlace place) {
+  HotParticles<double> moving = hot == 1 ? kicked(first_hot(place, 2000, 1), 0.75)
+                                         : heated(first_hot(place, 2000, hot), hot, 10., one_and_two, 5, 2);
+  return std::make_shared<Cold<double>>(2000, 1., place, std::move(moving), rshock_displacement, one_and_two);
 }
 
 // Rows and rings as in scenes, displaced by counter-based random numbers.
-inline Scene<double> uniform_rows(ParticleIndex count) {
-  return std::make_shared<Rows<double>>(symmetric_rows<double>(count, 0.5, 1, uniform_displacement(0.05, 3, 0)));
+inline Scene<double> uniform_rows(ParticleIndex count, double perturbation = 0.05, std::uint64_t seed = 3) {
+  return std::make_shared<Rows<double>>(
+      symmetric_rows<double>(count, 0.5, 1, uniform_displacement(perturbation, seed, 0)));
 }
 inline Scene<double> gaussian_ring(ParticleIndex count, double length, std::uint64_t seed = 3,
                                    double perturbation = 0.05) {

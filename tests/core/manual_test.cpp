@@ -14,10 +14,9 @@
 #include "cradle/tests/places.hpp"
 #include "cradle/tests/texts.hpp"
 
-namespace manual_test {
+namespace cradle::test::manual_test {
 
 namespace fs = std::filesystem;
-using cradle::test::matches;
 
 fs::path root() { return cradle::test::source_folder; }
 
@@ -129,4 +128,4 @@ TEST(Manual, CommentsNameFilesThatAreThere) {
   }
 }
 
-}  // namespace manual_test
+}  // namespace cradle::test::manual_test

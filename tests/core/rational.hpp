@@ -14,7 +14,8 @@ namespace cradle::test {
 using Rational =
     boost::multiprecision::number<boost::multiprecision::cpp_rational_backend, boost::multiprecision::et_off>;
 
-// A double as a quotient of integers.
+// A double as a quotient of integers, beside those of other types.
+using cradle::exactly;
 inline Rational exactly(double x) { return Rational(x); }
 
 // Converts 12.5, -3e-20 without rounding if T is rational.

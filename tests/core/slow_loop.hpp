@@ -3,11 +3,14 @@
 // collision it searches all gaps for the least exact time; ties go left to right. The origin of time may be moved after
 // any number of collisions. It makes one collision at a time, which the real loop cannot do.
 
+#include <gtest/gtest.h>
+
 #include <optional>
 #include <utility>
 
 #include "cradle/core/chains/chain.hpp"
 #include "cradle/core/chains/configuration.hpp"
+#include "cradle/core/engine/simulation.hpp"
 #include "cradle/core/queue/event_queue.hpp"
 
 namespace cradle::test {
@@ -56,5 +59,20 @@ template <class Law, class Chain> class SlowLoop {
   Chain chain_;
   int collisions_per_move_, since_move_ = 0;
 };
+
+// Of all gaps the chosen one is the first by (exact time, position), whatever the keys of the queue.
+template <class Run, class T>
+void expect_each_the_first(Run run, const T& end, std::uint64_t least_collisions, std::uint64_t least_close_calls = 0) {
+  const auto& chain = run.chain();
+  run.advance(end, [&](const Collision<T>& collision) {
+    std::optional<Slot> first;
+    for (Slot s = chain.first(); s <= chain.last(); ++s)
+      if (chain.closing(s) > T(0) && (!first || chain.due(s) < chain.due(*first))) first = s;
+    ASSERT_TRUE(first.has_value());
+    ASSERT_EQ(chain.particle(*first), collision.left) << "collision " << run.counts().collisions;
+  });
+  EXPECT_GE(run.counts().collisions, least_collisions);
+  EXPECT_GE(run.counts().close_calls, least_close_calls);
+}
 
 }  // namespace cradle::test

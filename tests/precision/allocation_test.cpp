@@ -13,10 +13,7 @@
 #include "cradle/tests/precision/counted_heap.hpp"
 #include "cradle/tests/precision/every_scalar.hpp"
 
-namespace allocation_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::allocation_test {
 
 #ifdef CRADLE_WITH_MPFR
 void* gmp_allocate(std::size_t size) { return ++allocations, std::malloc(size); }
@@ -89,4 +86,4 @@ TYPED_TEST(Allocations, FewWhereParticlesComeInAndMerge) {
   EXPECT_LT(allocations - before, (run.counts().collisions - collisions) / 9);
 }
 
-}  // namespace allocation_test
+}  // namespace cradle::test::allocation_test

@@ -14,10 +14,7 @@
 #include "cradle/precision/ball_text.hpp"
 #include "cradle/tests/core/rational.hpp"
 
-namespace ball_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::ball_test {
 
 Rational exact(double x) { return Rational(x); }
 Rational exact(long double x) { return Rational(x); }
@@ -265,4 +262,4 @@ TEST(BallTest, DecimalsInIntegersAreThoseOfWideNumbers) {
   EXPECT_GT(quick, 4000U);
 }
 
-}  // namespace ball_test
+}  // namespace cradle::test::ball_test

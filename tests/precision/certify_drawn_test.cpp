@@ -4,17 +4,14 @@
 // a neighbour's, invented or made on the wrong side of the cut-off; collisions side by side are those of one by one.
 #include <ostream>
 #include <string>
-#include <vector>
 
 #include <gtest/gtest.h>
 
 #include "cradle/tests/precision/drawn_scenes.hpp"
 #include "cradle/tests/precision/side_by_side.hpp"
 
-namespace certify_drawn_test {
+namespace cradle::test::certify_drawn_test {
 
-using namespace cradle;
-using namespace cradle::test;
 using namespace cradle::test::drawn;
 
 // What the proved scenes have in all.
@@ -218,4 +215,4 @@ TEST_P(CertifyDrawn, SideBySideCollisionsAreThoseOfOneByOne) {
   EXPECT_GE(on_walls, GetParam().least.on_walls);
 }
 
-}  // namespace certify_drawn_test
+}  // namespace cradle::test::certify_drawn_test

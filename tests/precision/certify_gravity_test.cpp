@@ -1,7 +1,6 @@
 // Proofs with walls under gravity, of single particles by hand: what is open and what is refuted, above all of one that
 // touches a ceiling on its flight; a bouncing ball is known up to the rounding of sums. (Scenes drawn at random:
 // certify_drawn_test.cpp.)
-#include <cmath>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -12,10 +11,8 @@
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/precision/drawn_scenes.hpp"
 
-namespace certify_gravity_test {
+namespace cradle::test::certify_gravity_test {
 
-using namespace cradle;
-using namespace cradle::test;
 using namespace cradle::test::drawn;
 
 std::shared_ptr<const Particles<B>> thrown(const std::vector<B>& x, const std::vector<B>& v, double acceleration,
@@ -202,4 +199,4 @@ TEST(CertifyGravity, ThresholdsOfTheLawHoldOnFloors) {
   expect_collisions_at(brief, {1, 2, 2.5, 3}, 2);  // elastic from 1/2 after the second one on
 }
 
-}  // namespace certify_gravity_test
+}  // namespace cradle::test::certify_gravity_test

@@ -13,10 +13,8 @@
 #include "cradle/tests/precision/every_scalar.hpp"
 #include "cradle/tests/precision/side_by_side.hpp"
 
-namespace certify_test {
+namespace cradle::test::certify_test {
 
-using namespace cradle;
-using namespace cradle::test;
 using namespace cradle::test::drawn;
 
 CertainLaw<B> with_restitution(const char* restitution, double cutoff = 0) {
@@ -302,4 +300,4 @@ TEST(CertifyRestitutionOfSpeed, SharesThatDependOnADifferenceEnclose) {
   EXPECT_EQ(counted, 4500U);
 }
 
-}  // namespace certify_test
+}  // namespace cradle::test::certify_test

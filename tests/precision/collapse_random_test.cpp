@@ -17,10 +17,8 @@
 #include "cradle/tests/precision/every_scalar.hpp"
 
 #ifdef CRADLE_WITH_MPFR
-namespace collapse_random_test {
+namespace cradle::test::collapse_random_test {
 
-using namespace cradle;
-using namespace cradle::test;
 using Exact = Mpfr<4>;
 
 // Decimals, so that each type rounds them for itself.
@@ -122,5 +120,5 @@ void expect_errors_hold(int systems, std::uint64_t seed) {
 TEST(CollapseRandom, ErrorsHold) { expect_errors_hold(6, 3); }
 TEST(SlowCollapseRandom, ErrorsHold) { expect_errors_hold(200, 20261123); }
 
-}  // namespace collapse_random_test
+}  // namespace cradle::test::collapse_random_test
 #endif

@@ -11,10 +11,7 @@
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/precision/every_scalar.hpp"
 
-namespace collapse_sizes_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::collapse_sizes_test {
 
 template <class P> using CollapseSizes = InPrecision<P>;
 TYPED_TEST_SUITE(CollapseSizes, WidePrecision, PrecisionName);
@@ -103,15 +100,38 @@ template <class T> int cycles_kept(const Scene<T>& particles, const T& restituti
   return cycles;
 }
 
-// Gaps (1, 2, 1), closing speeds (1, 1, 1), eps = 0.15: a = (1 + eps) cos(pi/4), and an antisymmetric error grows by
-// eps/lam-^2 a cycle. From one rounding it takes ln(1/v)/ln(eps/lam-^2) cycles to become as large as the gaps.
+// Four particles in the checkerboard pattern (Bernu and Mazighi, J. Phys. A 23, 5745 (1990)): gaps (1, 2, 1), closing
+// speeds (1, 1, 1).
+template <class T> Scene<T> checkerboard() {
+  return list<T>({T(0), T(1), T(3), T(4)}, {T(3) / T(2), T(1) / T(2), T(-1) / T(2), T(-3) / T(2)});
+}
+
+// With eps = 0.15 a = (1 + eps) cos(pi/4), and an antisymmetric error grows by eps/lam-^2 a cycle. From one rounding it
+// takes ln(1/v)/ln(eps/lam-^2) cycles to become as large as the gaps.
 TYPED_TEST(CollapseSizes, FourParticlesKeepTheirSymmetry) {
   using T = typename TypeParam::Scalar;
   const double eps = 0.15, a = (1 + eps) / std::sqrt(2.), slow = (a - std::sqrt(a * a - 4 * eps)) / 2;
   const double growth = eps / (slow * slow), room = -std::log(to_double(std::numeric_limits<T>::epsilon()));
   const int predicted = static_cast<int>(room / std::log(growth));
-  const auto particles = list<T>({T(0), T(1), T(3), T(4)}, {T(3) / T(2), T(1) / T(2), T(-1) / T(2), T(-3) / T(2)});
-  EXPECT_GE(cycles_kept(particles, from_text<T>(".15"), 1000), predicted - 4);  // 64 roundings of head start: 4 cycles
+  // 64 roundings of head start: 4 cycles.
+  EXPECT_GE(cycles_kept(checkerboard<T>(), from_text<T>(".15"), 1000), predicted - 4);
 }
 
-}  // namespace collapse_sizes_test
+// In double the arithmetic is mirror-symmetric to the last bit: the pattern lasts until the collapse, of known time.
+TEST(CollapseSizesInDouble, FourParticlesKeepTheirSymmetryToTheLastBit) {
+  for (const auto& [eps, collapse] :
+       {std::pair(.15, 11. / 7), std::pair(.1, 1.53471469049059024594590831142126492903)}) {
+    SCOPED_TRACE(eps);
+    EXPECT_EQ(cycles_kept(checkerboard<double>(), eps, 100), 100);
+    auto run = gap_run(checkerboard<double>(), Inelastic<double>(eps), stop_below(1e-100));
+    run.advance(2, [&](const Collision<double>& c) {
+      const auto& chain = run.chain();
+      if (c.left == 1) {
+        ASSERT_EQ(chain.closing(chain.first()), chain.closing(chain.last()));
+      }
+    });
+    EXPECT_NEAR(run.last_collision_time(), collapse, 1e-15 * collapse);
+  }
+}
+
+}  // namespace cradle::test::collapse_sizes_test

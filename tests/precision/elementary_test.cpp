@@ -4,16 +4,11 @@
 // are exactly what the pair loses, and its limits are the plain law's.
 #include "cradle/core/base/elementary.hpp"
 
-#include <cmath>
-
 #include "cradle/core/laws/law.hpp"
 #include "cradle/tests/precision/every_scalar.hpp"
 #include "cradle/tests/precision/reference.hpp"
 
-namespace elementary_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::elementary_test {
 
 template <class P> using Elementary = InPrecision<P>;
 TYPED_TEST_SUITE(Elementary, EveryPrecision, PrecisionName);
@@ -128,4 +123,4 @@ TYPED_TEST(Elementary, LawHasThePlainOneAsItsLimits) {
   }
 }
 
-}  // namespace elementary_test
+}  // namespace cradle::test::elementary_test

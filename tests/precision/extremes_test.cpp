@@ -10,15 +10,11 @@
 #include <utility>
 
 #include "cradle/core/initial/walled.hpp"
-#include "cradle/core/observe/configuration_statistics.hpp"
 #include "cradle/tests/core/compare.hpp"
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/precision/every_scalar.hpp"
 
-namespace extremes_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::extremes_test {
 
 constexpr double u = 0x1p-53;
 
@@ -80,18 +76,6 @@ TEST(Extremes, MassesOfOneToATrillion) {
   for (ParticleIndex b = 0; b < 40; ++b) x.push_back(even->position(b)), v.push_back(even->velocity(b));
   for (const double ratio : {1e12, 1e-12})
     expect_collisions_of_double<double_double>(0.9, 1e-4, x, v, alternating(ratio, 40), 1.25, 5);
-
-  // Momentum and energy: each collision rounds two closing speeds of at most 4, and each acts on all particles to one
-  // side.
-  const auto particles = in<double>(x, v, alternating(1e12, 40));
-  auto run = mass_run(particles, Inelastic<double>(0.9, 1e-4));
-  ASSERT_EQ(run.advance(1), Status::reached);
-  const auto c = configuration_at(run, 1.);
-  const double mass = 20 * (1e12 + 1), error = 2 * static_cast<double>(run.counts().collisions) * 4 * u;
-  EXPECT_LE(std::abs(momentum_gained(c, *particles)), mass * (error + 4 * u));
-  EXPECT_LE(std::abs(particles->kinetic_energy() - run.energy_lost() - kinetic_energy(c, *particles, c.time)),
-            mass * 4 * error);
-  EXPECT_EQ(run.chain().account().order_lost, 0U);
 }
 
 template <class P> using EveryExtreme = InPrecision<P>;
@@ -218,4 +202,4 @@ TYPED_TEST(SlowStandstill, EndsARunThatNoLongerAdvances) {
   EXPECT_LE(run.counts().collisions, 1200000U);
 }
 
-}  // namespace extremes_test
+}  // namespace cradle::test::extremes_test

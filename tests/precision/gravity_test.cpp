@@ -2,17 +2,13 @@
 // against 100 digits. (A column: shaken_walls_test.cpp.)
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <vector>
 
 #include "cradle/core/initial/walled.hpp"
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/precision/every_scalar.hpp"
 
-namespace gravity_in_types_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::gravity_in_types_test {
 
 template <class T> using Falling = GapChain<T, IndividualMasses<T>>;
 template <class T> using FallingRun = Simulation<T, Inelastic<T>, Falling<T>>;
@@ -131,4 +127,4 @@ TYPED_TEST(ApproachIn, AThousandBouncesKeepTheirTimes) {
   }
 }
 
-}  // namespace gravity_in_types_test
+}  // namespace cradle::test::gravity_in_types_test

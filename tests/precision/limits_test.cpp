@@ -11,10 +11,7 @@
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/precision/every_scalar.hpp"
 
-namespace limits_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::limits_test {
 
 template <class P> using EveryLimit = InPrecision<P>;
 TYPED_TEST_SUITE(EveryLimit, EveryPrecision, PrecisionName);
@@ -95,4 +92,4 @@ TYPED_TEST(EveryLimit, OnlyNumbersAreTimes) {
   EXPECT_EQ(run.counts().collisions, 3U);
 }
 
-}  // namespace limits_test
+}  // namespace cradle::test::limits_test

@@ -13,10 +13,7 @@
 
 #include "cradle/tests/precision/every_scalar.hpp"
 
-namespace mpfr_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::mpfr_test {
 
 // An mpfr_t of the working precision, as the library's own functions know it.
 class Plain {
@@ -174,6 +171,6 @@ TYPED_TEST(MpfrInPlace, ZerosAndIntegers) {
   EXPECT_TRUE(std::numeric_limits<T>::min() > T(0) && std::numeric_limits<T>::max() + T(1) > T(0));
 }
 
-}  // namespace mpfr_test
+}  // namespace cradle::test::mpfr_test
 
 #endif

@@ -1,7 +1,7 @@
 // The engine in every scalar type. Proves: all make the collisions of the paper's shock that an independent
 // event-driven program counts in double, binary128 and 100 digits alike; all settle the collapse time of three
 // particles, of equal and unequal masses, to the full precision of the type; all follow a collapse to the end of their
-// range.
+// range, collision by collision on its closed form: plain double keeps the relative precision of gaps over 300 decades.
 //
 // Closed forms (McNamara and Young, Phys. Fluids A 4, 496 (1992)): p_n the closing speed at collision n, g_n the other
 // gap then; a_r, a_l the shares of a collision's closing speed handed to the right and to the left gap (both (1+eps)/2
@@ -10,7 +10,7 @@
 // numbers that the type holds.
 //
 // Tolerance. Let v be the largest error of one operation. A collision takes 3 roundings of a gap and 6 of a closing
-// speed (tests/core/engine/collapse_test.cpp), a flight 3 more: the n-th interval is off by 12 (n+1) v. Intervals fall
+// speed (collisions_down_to), a flight 3 more: the n-th interval is off by 12 (n+1) v. Intervals fall
 // by q = lam-/lam+, so all are off by 12 v (t_c - t_0)/(1 - q) together. The run stops when t_c moved by less than half
 // an epsilon of the time elapsed twice running, with q < 1/2 within one epsilon; its rounding to one number is another.
 #ifdef CRADLE_WITH_MPFR
@@ -19,13 +19,11 @@
 
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/core/slow_loop.hpp"
+#include "cradle/tests/core/three_collapses.hpp"
 #include "cradle/tests/precision/every_scalar.hpp"
 #include "cradle/tests/precision/reference.hpp"
 
-namespace precision_runs_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::precision_runs_test {
 
 template <class P> using EveryScalarRun = InPrecision<P>;
 TYPED_TEST_SUITE(EveryScalarRun, EveryPrecision, PrecisionName);
@@ -90,13 +88,16 @@ template <class T> Scene<T> three_particles(const std::vector<T>& masses) {
   return list<T>({T(0), T(1), T(3)}, {T(1), T(0), T(-1)}, masses);
 }
 
+// How far off the time of a collapse may be that has been followed to its end.
+template <class T> Reference of_rounding(const Collapse& collapse) {
+  return 12 * rounding<T>() * (collapse.time - 1) / (1 - collapse.ratio) +
+         2 * reference(std::numeric_limits<T>::epsilon()) * collapse.time;
+}
+
 template <class T, class Run> void expect_collapse_time(Run run, const Collapse& expected) {
   ASSERT_EQ(run.advance(T(1000)), Status::collapsed);
   ASSERT_TRUE(run.collapse().settled);
-  const Reference error = abs(reference(run.collapse().time) - expected.time);
-  const Reference of_rounding = 12 * rounding<T>() * (expected.time - 1) / (1 - expected.ratio);
-  const Reference epsilon = reference(std::numeric_limits<T>::epsilon()) * expected.time;
-  EXPECT_LE(error, of_rounding + 2 * epsilon) << static_cast<double>(Reference(error / epsilon)) << " epsilon";
+  EXPECT_LE(abs(reference(run.collapse().time) - expected.time), of_rounding<T>(expected));
   EXPECT_LE(run.chain().account().order_lost, 0U);
 }
 
@@ -130,39 +131,81 @@ TYPED_TEST(EveryScalarCollapse, TimeIsSettledToFullPrecision) {
   }
 }
 
-// Three roundings a collision, however closing speeds are rounded (tests/core/engine/collapse_test.cpp).
-template <class T> void expect_invariant_down_to(const char* least) {
-  const T restitution = from_text<T>(".05"), stop = from_text<T>(least);
-  const Inelastic<T> law(restitution, T(0));
-  SlowLoop loop(law, GapChain<T>(three_particles<T>({}), T(0)));
-  const Reference eps = reference(restitution), v = rounding<T>();
-  Reference invariant(1);
+// Every collision lies on the closed form, with p_1 = 1 + a_r p_0 and p_{n+1} = a p_n - eps p_{n-1}, a being a_r or
+// a_l. Returns how many collisions it takes to a gap below `least`.
+//
+// Bound on the invariant. With the origin of time at the last collision, the next one is at g/p (one rounding), the
+// other gap then is (eps p_before) times that (two roundings): three roundings a collision, however p is rounded.
+// Bound on the speeds. Each p is formed from two others with three roundings, errors inherit the recursion's growth
+// lam+; relative to p_n, with p_n > 0 falling by lam+ a collision, every collision adds at most
+// 3 v (a + eps/lam+)/lam+ < 6 v for these.
+template <class Chain>
+std::uint64_t collisions_down_to(const char* least, double given, const std::vector<double>& weights) {
+  using T = typename Chain::Scalar;
+  const T restitution = cradle::exactly<T>(given), stop = from_text<T>(least);
+  const std::vector<T> masses = numbers<T>(weights);
+  SlowLoop loop(Inelastic<T>(restitution, T(0)), Chain(three_particles(masses), T(0)));
+  const Reference eps = reference(restitution), v = rounding<T>(), left = reference(masses[0]),
+                  middle = reference(masses[1]), right = reference(masses[2]),
+                  to_right = (1 + eps) * left / (left + middle), to_left = (1 + eps) * right / (middle + right);
+  Reference invariant(1), before(0), p(1);
   std::uint64_t n = 0;
   for (bool down = false; !down; ++n) {
     const auto s = loop.next();
-    ASSERT_TRUE(s.has_value());
+    if (!s || testing::Test::HasFailure()) return 0;
     const Step<T> step = loop.collide(*s);
-    const Reference product = reference(step.nearest_gap) * reference(step.closing_speed);
-    ASSERT_LE(abs(product - invariant), 3 * n * v * invariant) << "collision " << n;
+    const Reference closing = reference(step.closing_speed);
+    EXPECT_EQ(step.particle, static_cast<ParticleIndex>(n % 2));
+    EXPECT_LE(abs(reference(step.nearest_gap) * closing - invariant), 3 * n * v * invariant) << "collision " << n;
+    EXPECT_LE(abs(closing - p), 6 * n * v * p) << "collision " << n;
     invariant *= eps;
+    const Reference next =
+        n == 0 ? Reference(1 + to_right) : Reference((n % 2 == 0 ? to_right : to_left) * p - eps * before);
+    before = p;
+    p = next;
     down = step.nearest_gap < stop;
+    if (!down) continue;
+    // What is left of the way, g/(p_{n+1} - r lam p_n), is less than twice the next interval, as q < 1/2.
+    const Collapse expected = closed_form(restitution, masses);
+    EXPECT_LE(abs(reference(step.time) - expected.time),
+              of_rounding<T>(expected) + 2 * reference(step.nearest_gap) / p);
   }
-  auto run = gap_run(three_particles<T>({}), law, stop_below(stop));
+  return n;
+}
+
+// A run follows the collapse as far as its policy says, by the same collisions.
+template <class Chain>
+void expect_followed_down_to(const char* least, double restitution, const std::vector<double>& masses) {
+  using T = typename Chain::Scalar;
+  SCOPED_TRACE(testing::Message() << "eps = " << restitution << " down to " << least);
+  const T stop = from_text<T>(least);
+  Simulation run(Inelastic<T>(cradle::exactly<T>(restitution), T(0)), Chain(three_particles(numbers<T>(masses)), T(0)),
+                 stop_below(stop));
   ASSERT_EQ(run.advance(T(1000)), Status::collapsed);
-  EXPECT_EQ(run.counts().collisions, n);
+  EXPECT_EQ(run.counts().collisions, collisions_down_to<Chain>(least, restitution, masses));
   EXPECT_TRUE(run.collapse().gap < stop && run.collapse().gap > T(0));
-  EXPECT_TRUE(run.collapse().gap > stop / T(64)) << "a collision takes it down by lam- = 1/8";
+  EXPECT_TRUE(run.collapse().gap > stop / T(256)) << "a collision takes it down by lam- > 1/50";
   EXPECT_EQ(run.chain().account().order_lost, 0U);
 }
 
 TYPED_TEST(EveryScalarCollapse, GapsAreFollowedToTheEndOfTheRange) {
   using T = typename TypeParam::Scalar;
-  expect_invariant_down_to<T>("1e-290");
+  for (const ThreeCollapse& row : three_collapses)
+    expect_followed_down_to<GapChain<T>>("1e-290", row.restitution(), {1, 1, 1});
+  expect_followed_down_to<GapChain<T, IndividualMasses<T>>>("1e-290", 0.1, {3, 1, 2});
   if (std::same_as<T, double> || std::same_as<T, double_double>) return;
-  expect_invariant_down_to<T>("1e-4000");
-  if (TypeParam::digits > 0) expect_invariant_down_to<T>("1e-20000");
+  expect_followed_down_to<GapChain<T>>("1e-4000", 0.05, {1, 1, 1});
+  if (TypeParam::digits > 0) expect_followed_down_to<GapChain<T>>("1e-20000", 0.05, {1, 1, 1});
 }
 
-}  // namespace precision_runs_test
+TEST(CollapseInDouble, TheGapPassesEveryDecadeAtTheRightCollision) {
+  constexpr std::array decades{"1e-16", "1e-34", "1e-100", "1e-300"};
+  for (const ThreeCollapse& row : three_collapses)
+    for (std::size_t k = 0; k < decades.size(); ++k)
+      EXPECT_EQ(collisions_down_to<GapChain<double>>(decades[k], row.restitution(), {1, 1, 1}), row.passes[k])
+          << row.eps << " down to " << decades[k];
+}
+
+}  // namespace cradle::test::precision_runs_test
 
 #endif

@@ -18,10 +18,7 @@
 #include "cradle/tests/core/slow_loop.hpp"
 #include "cradle/tests/precision/every_scalar.hpp"
 
-namespace random_scenes_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::random_scenes_test {
 
 // Whole numbers, so that every type gets the same scene: in 1/1024.
 struct Drawn {
@@ -168,4 +165,4 @@ TYPED_TEST(RandomScenes, ACollapseBeyondTheRangeOfDoubleForgetsNoOtherCollision)
   EXPECT_TRUE(rc::check([&] { check<GapChain<T, IndividualMasses<T>>>(inelastic<T>, d, false); }));
 }
 
-}  // namespace random_scenes_test
+}  // namespace cradle::test::random_scenes_test

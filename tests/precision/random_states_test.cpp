@@ -5,10 +5,7 @@
 #include "cradle/core/initial/poisson.hpp"
 #include "cradle/tests/precision/every_scalar.hpp"
 
-namespace random_states_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::random_states_test {
 
 constexpr ParticleIndex count = 301;
 
@@ -23,7 +20,7 @@ template <class T> std::vector<std::shared_ptr<const Particles<T>>> states() {
     return std::make_shared<Cold<T>>(count, third, HotPlace::middle, kicked(ParticleIndex{150}, third), outwards,
                                      masses, falls);
   };
-  return {std::make_shared<Gas<T>>(count, T(-third), length, third, velocity, places, masses),
+  return {std::make_shared<cradle::Gas<T>>(count, T(-third), length, third, velocity, places, masses),
           std::make_shared<Ring<T>>(count, length, third, velocity, places, masses), cold(0), cold(0.6), cold(-0.5)};
 }
 
@@ -52,4 +49,4 @@ TYPED_TEST(RandomStates, AreThoseOfDoubleUpToRounding) {
   }
 }
 
-}  // namespace random_states_test
+}  // namespace cradle::test::random_states_test

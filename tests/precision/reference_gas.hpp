@@ -1,18 +1,20 @@
-// A gas that shares no code with the engine or the checker of proofs: it searches all pairs of neighbours for the next
-// collision. A particle's stored position is extrapolated back to time 0, which keeps rationals short. In rationals it
-// is exact; scenes with roots use 100 digits. Under gravity this is so in a frame that falls; of both times at which a
-// parabola meets a wall, each by the textbook's formula, it takes the first that is to come.
+// A gas that shares no code with the engine or the checker of proofs, on a line, a ring or between walls: it searches
+// all pairs of neighbours for the next collision. A particle's stored position is extrapolated back to time 0, which
+// keeps rationals short. In rationals it is exact; scenes with roots use 100 digits. Under gravity this is so in a
+// frame that falls; of both times at which a parabola meets a wall, each by the textbook's formula, it takes the first
+// that is to come.
 #pragma once
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
 
+#include "cradle/core/initial/particles.hpp"
 #include "cradle/precision/bin_float.hpp"
 #include "cradle/tests/core/rational.hpp"
 
@@ -45,10 +47,11 @@ template <class T> struct Gas {
   T time{0};
   std::uint64_t collisions = 0, below_cutoff = 0, merges = 0;
   std::optional<std::int64_t> latest{};  // the gap that closed last
-  bool tied = false;                     // three particles met at one time: the motion after that is undefined
+  bool tied = false;                     // three particles met at one time: the motion after that is undefined,
+  bool ties_from_left = false;           // unless such collisions are made from the left
 
   // Makes all collisions up to a time, or the first `most`.
-  void advance(const T& until, std::uint64_t most) {
+  void advance(const T& until, std::uint64_t most = std::numeric_limits<std::uint64_t>::max()) {
     while (collisions < most && next(until)) continue;
     if (collisions < most) time = until;
   }
@@ -79,8 +82,9 @@ template <class T> struct Gas {
     time = *first;
     for (const std::int64_t a : together)
       for (const std::int64_t b : together)
-        tied = tied || a - b == 1 ||
-               (length > 0 && a != b && after(static_cast<std::size_t>(b)) == static_cast<std::size_t>(a));
+        tied = !ties_from_left &&
+               (tied || a - b == 1 ||
+                (length > 0 && a != b && after(static_cast<std::size_t>(b)) == static_cast<std::size_t>(a)));
     if (tied) return std::nullopt;
     const std::int64_t gap = together.front();
     latest = gap;
@@ -195,9 +199,11 @@ template <class T> struct Gas {
     l.origin = x_l - l.v * time;
     r.origin = x_r - r.v * time;
   }
+  // The first particle of a cell is the heaviest that merged, the left one of equal ones.
   void merge(std::size_t k, const T& x) {
     Cell &l = cells[k], &r = cells[after(k)];
     ++merges;
+    if (l.m < r.m) std::swap(l.particles, r.particles);
     l.v = (l.m * l.v + r.m * r.v) / (l.m + r.m);
     l.m += r.m;
     l.origin = x - l.v * time;
@@ -227,5 +233,14 @@ template <class T> struct Gas {
     r.origin = x_r - r.v * time;
   }
 };
+
+// The same particles, without walls.
+template <class T> Gas<T> gas_like(const Particles<T>& particles) {
+  Gas<T> gas;
+  for (ParticleIndex b = 0; b < particles.count(); ++b)
+    gas.cells.push_back({particles.position(b), particles.velocity(b), particles.mass(b), {b}});
+  gas.length = particles.circumference();
+  return gas;
+}
 
 }  // namespace cradle::test

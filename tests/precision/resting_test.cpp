@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <boost/math/constants/constants.hpp>
-#include <cmath>
 #include <optional>
 #include <vector>
 
@@ -12,10 +11,8 @@
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/precision/every_scalar.hpp"
 
-namespace resting_in_types_test {
+namespace cradle::test::resting_in_types_test {
 
-using namespace cradle;
-using namespace cradle::test;
 using Reference = bin_float;
 
 // The numbers of a scene, exact in every type; shape: nothing for a floor that is not shaken.
@@ -200,4 +197,4 @@ TYPED_TEST(SlowRestingIn, ThePileHasTheCollisionsOfBruteForce) {
   }
 }
 
-}  // namespace resting_in_types_test
+}  // namespace cradle::test::resting_in_types_test

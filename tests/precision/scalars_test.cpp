@@ -7,10 +7,7 @@
 #include "cradle/precision/scalars.hpp"
 #include "cradle/tests/texts.hpp"
 
-namespace scalars_test {
-
-using namespace cradle;
-using cradle::test::has;
+namespace cradle::test::scalars_test {
 
 template <class T> bool leads_to(const char* name, unsigned digits = 0) {
   return with_scalar<bool>({name, digits}, [](auto type) { return std::same_as<typename decltype(type)::type, T>; });
@@ -73,4 +70,4 @@ TEST(ScalarNames, MoreDigitsThanThereIsRoomForAreRefused) {
 TEST(ScalarNames, MpfrIsNotInThisBuild) { EXPECT_TRUE(has(refusal("mpfr", 50), "install libmpfr-dev")); }
 #endif
 
-}  // namespace scalars_test
+}  // namespace cradle::test::scalars_test

@@ -15,10 +15,7 @@
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/precision/every_scalar.hpp"
 
-namespace shaken_walls_in_types_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::shaken_walls_in_types_test {
 
 template <class P> class ShakenIn : public InPrecision<P> {};
 TYPED_TEST_SUITE(ShakenIn, EveryPrecision, PrecisionName);
@@ -287,4 +284,4 @@ TYPED_TEST_SUITE(ShakenGapsIn, FixedTypes);
 TYPED_TEST(ShakenGapsIn, NoCollisionIsSkipped) { expect_never_late<TypeParam>(2000); }
 TYPED_TEST(ShakenGapsIn, SlowNoCollisionOfManyIsSkipped) { expect_never_late<TypeParam>(100000); }
 
-}  // namespace shaken_walls_in_types_test
+}  // namespace cradle::test::shaken_walls_in_types_test

@@ -11,10 +11,7 @@
 #include "cradle/tests/precision/reference.hpp"
 #include "cradle/tests/texts.hpp"
 
-namespace text_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::text_test {
 
 template <class P> using EveryText = InPrecision<P>;
 TYPED_TEST_SUITE(EveryText, EveryPrecision, PrecisionName);
@@ -169,6 +166,6 @@ TEST(DoubleDoubleText, PartsFarApartComeBack) {
   expect_round_trip(double_double::sum(0x1.fffffffffffffp1023, 0x1p-1074));
 }
 
-}  // namespace text_test
+}  // namespace cradle::test::text_test
 
 #endif

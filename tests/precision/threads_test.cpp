@@ -9,10 +9,7 @@
 #include "cradle/tests/core/compare.hpp"
 #include "cradle/tests/precision/every_scalar.hpp"
 
-namespace precision_threads_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::precision_threads_test {
 
 template <class P> using WideThreads = InPrecision<P>;
 TYPED_TEST_SUITE(WideThreads, WidePrecision, PrecisionName);
@@ -81,4 +78,4 @@ TYPED_TEST(WideThreads, RunsAtOnceHaveTheBitsOfRunsInTurn) {
   }
 }
 
-}  // namespace precision_threads_test
+}  // namespace cradle::test::precision_threads_test

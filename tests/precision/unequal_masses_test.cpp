@@ -23,10 +23,7 @@
 #include "cradle/tests/core/compare.hpp"
 #include "cradle/tests/precision/every_scalar.hpp"
 
-namespace unequal_masses_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::unequal_masses_test {
 
 enum class Bounce { elastic, cutoff, speed_dependent, contact_time };
 
@@ -394,4 +391,4 @@ TEST(UnequalMasses, WatchedAndNotHaveTheSameBits) {
   }
 }
 
-}  // namespace unequal_masses_test
+}  // namespace cradle::test::unequal_masses_test

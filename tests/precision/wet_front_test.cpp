@@ -12,8 +12,7 @@
 #include "cradle/core/theory/wet_shock.hpp"
 #include "cradle/tests/precision/every_scalar.hpp"
 
-namespace cradle {
-namespace wet_front_test {
+namespace cradle::test::wet_front_test {
 
 template <class P> using WetFront = test::InPrecision<P>;
 TYPED_TEST_SUITE(WetFront, test::EveryPrecision, test::PrecisionName);
@@ -49,5 +48,4 @@ TYPED_TEST(WetFront, FollowsTheRecursion) {
 
 TEST(WetFrontInDouble, FollowsTheRecursionForThousandsOfCollisions) { expect_front(1e-4, 3750, 50); }
 
-}  // namespace wet_front_test
-}  // namespace cradle
+}  // namespace cradle::test::wet_front_test

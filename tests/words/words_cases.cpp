@@ -2,7 +2,6 @@
 // proofs must refuse. Also run with errors planted in core/words/, each of which a case here must find.
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <cstdint>
 #include <random>
 #include <string>

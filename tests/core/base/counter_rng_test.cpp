@@ -10,10 +10,7 @@
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/core/rational.hpp"
 
-namespace counter_rng_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::counter_rng_test {
 
 using Words = std::array<std::uint32_t, 4>;
 
@@ -140,4 +137,4 @@ TEST(CounterRng, DisplacementsStayWithinThePerturbation) {
   EXPECT_THROW(uniform_displacement(-0.1, 1, 0), std::invalid_argument);
 }
 
-}  // namespace counter_rng_test
+}  // namespace cradle::test::counter_rng_test

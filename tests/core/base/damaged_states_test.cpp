@@ -13,11 +13,8 @@
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/texts.hpp"
 
-namespace damaged_states_test {
+namespace cradle::test::damaged_states_test {
 
-using namespace cradle;
-using cradle::test::gaussian_ring;
-using cradle::test::uniform_rows;
 using Dry = Inelastic<double>;
 
 template <class Run> class Contradicted {
@@ -199,4 +196,4 @@ TEST(DamagedStates, PlacesBeyondAllTurnsStayWhereTheyAre) {
   }
 }
 
-}  // namespace damaged_states_test
+}  // namespace cradle::test::damaged_states_test

@@ -12,11 +12,8 @@
 #include "cradle/tests/core/saved.hpp"
 #include "cradle/tests/texts.hpp"
 
-namespace state_test {
+namespace cradle::test::state_test {
 
-using namespace cradle;
-using test::gaussian_ring;
-using test::uniform_rows;
 using Dry = Inelastic<double>;
 
 template <class X> X there_and_back(const X& x) {
@@ -60,11 +57,16 @@ TEST(State, ListsLongerThanTheFileAreRefusedBeforeTheyAreMade) {
   EXPECT_LT(values.capacity(), 1000U);
 }
 
-// A run that is made anew takes the state of this one.
-template <class Run, class Make> void expect_taken(const Run& run, const Make& make) {
-  SavedState state = SavedState::of(run);
-  Run later = make();
-  EXPECT_NO_THROW(load(state, later)) << run.last_collision_time();
+// A run that is made anew takes the state of one that has advanced, at any of these times.
+template <class Make, class... Segments>
+void expect_always_taken(const Make& make, double step, int steps, Segments&&... segments) {
+  auto run = make();
+  for (int k = 1; k <= steps; ++k) {
+    run.advance(step * k, segments...);
+    SavedState state = SavedState::of(run);
+    auto later = make();
+    EXPECT_NO_THROW(load(state, later)) << run.last_collision_time();
+  }
 }
 
 // As do runs of all kinds, in engine/same_bits_test.cpp.
@@ -79,13 +81,7 @@ TEST(State, OfAGasWithoutEventsIsContinuedWithTheSameBits) {
 // After a collision by which cells are laid out anew, fewer than before, nothing points beyond them.
 TEST(State, OfCellsLaidOutAnewIsTaken) {
   using Run = Simulation<double, Sticky<double>, ClusterChain<double>>;
-  const auto particles = gaussian_ring(60, 60);
-  const auto make = [&] { return Run(Sticky<double>(), ClusterChain<double>(particles, 0.)); };
-  Run run = make();
-  for (double time = 0; time <= 300; time += 5) {
-    run.advance(time);
-    expect_taken(run, make);
-  }
+  expect_always_taken([] { return Run(Sticky<double>(), ClusterChain<double>(gaussian_ring(60, 60), 0.)); }, 5, 60);
 }
 
 // Every byte of a state changed: it is refused, or a run that can continue.
@@ -114,41 +110,26 @@ TEST(State, WhatDoesNotFitTogetherIsRefused) {
 // Slots beyond the gaps that are held keep what a time slab of segments has left there.
 TEST(State, OfRowsThatWereRunInSegmentsIsTaken) {
   using Run = Simulation<double, Dry, GapChain<double>>;
-  const auto rows =
-      std::make_shared<Rows<double>>(symmetric_rows<double>(4000, 0.5, 1., uniform_displacement(0.05, 1, 0)));
-  const auto begun = [&] { return Run(Dry(0.999, 1e-5), GapChain<double>(rows, 0.)); };
-  Run run = begun();
   Segments<Dry, GapChain<double>> segments(Workers{});
-  for (int k = 1; k <= 30; ++k) {
-    run.advance(37.3 * k, segments);
-    expect_taken(run, begun);
-  }
+  expect_always_taken([] { return Run(Dry(0.999, 1e-5), GapChain<double>(uniform_rows(4000, 0.05, 1), 0.)); }, 37.3, 30,
+                      segments);
 }
 
 // A chain with fewer slots than before takes over none that name those it had.
 TEST(State, OfRingsThatWereRunInSegmentsIsTaken) {
   using Run = Simulation<double, Sticky<double>, ClusterChain<double>>;
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    SCOPED_TRACE(seed);
     const auto count = static_cast<ParticleIndex>(600 + 37 * seed);
     const auto ring = gaussian_ring(count, static_cast<double>(count), seed);
-    const auto begun = [&] { return Run(Sticky<double>(), ClusterChain<double>(ring, 0.)); };
-    Run run = begun();
     Segments<Sticky<double>, ClusterChain<double>> segments(Workers{}, {60, 8, 0, true});
-    for (int k = 1; k <= 120; ++k) {
-      SCOPED_TRACE(seed);
-      run.advance(0.4 * k, segments);
-      expect_taken(run, begun);
-    }
+    expect_always_taken([&] { return Run(Sticky<double>(), ClusterChain<double>(ring, 0.)); }, 0.4, 120, segments);
   }
 }
 
 // In absolute positions a collision may be due beyond the range of the type.
 TEST(State, WithCollisionsThatNeverComeIsTaken) {
-  const auto particles = test::list<double>({0, 1, 3}, {1e-310, 0, -1});
-  const auto begun = [&] { return test::position_run(particles, Dry(0.9)); };
-  auto run = begun();
-  run.advance(1);
-  expect_taken(run, begun);
+  expect_always_taken([] { return position_run(list<double>({0, 1, 3}, {1e-310, 0, -1}), Dry(0.9)); }, 1, 1);
 }
 
-}  // namespace state_test
+}  // namespace cradle::test::state_test

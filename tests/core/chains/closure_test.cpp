@@ -12,10 +12,7 @@
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/core/rational.hpp"
 
-namespace closure_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::closure_test {
 
 // The distance of the outermost particles seen minus the sum of the gaps between, in long double: as velocities are 1/2
 // and times short, the places are exact in it, and n gaps add up to n/2 units of 2^-64 times their sum.
@@ -91,4 +88,4 @@ TEST(Reading, ByTwoThreadsAtOnce) {
   }
 }
 
-}  // namespace closure_test
+}  // namespace cradle::test::closure_test

@@ -8,10 +8,7 @@
 #include "cradle/tests/core/compare.hpp"
 #include "cradle/tests/core/fixtures.hpp"
 
-namespace positions_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::positions_test {
 
 constexpr double starts[] = {-100, -3.5, 10, 1000};
 
@@ -72,4 +69,4 @@ TEST(Positions, TheSameRunLater) {
   }
 }
 
-}  // namespace positions_test
+}  // namespace cradle::test::positions_test

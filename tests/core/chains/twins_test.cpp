@@ -1,22 +1,17 @@
 // Compares every way of holding the same particles, dry and wet. Proves: gaps and absolute positions make the same
-// collisions, and so does a loop without a queue. Runs side by side do not change a bit. (What else must not change one
-// is in engine/same_bits_test.cpp.)
+// collisions. Runs side by side do not change a bit. (What else must not change one is in engine/same_bits_test.cpp; a
+// loop without a queue makes the same collisions in precision/filtered_queue_test.cpp.)
 #include <gtest/gtest.h>
 
-#include <map>
 #include <vector>
 
 #include "cradle/core/chains/cluster_chain.hpp"
 #include "cradle/tests/core/compare.hpp"
 #include "cradle/tests/core/digits.hpp"
 #include "cradle/tests/core/fixtures.hpp"
-#include "cradle/tests/core/slow_loop.hpp"
-#include "cradle/tests/core/slow_ring.hpp"
+#include "cradle/tests/precision/reference_gas.hpp"
 
-namespace twins_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::twins_test {
 
 // With rows of speed 1/2 collapse sets in at t = 2/(1 - (4/pi) atan sqrt eps).
 const Inelastic<double> law(0.98, 1e-5);    // t = 311
@@ -50,38 +45,8 @@ TEST(Twins, GapsAndPositionsMakeTheSameCollisions) {
   expect_same_collisions(gap_run(rows, law), position_run(rows, law), 10, 250, 4e-11, 20000);
   expect_same_collisions(mass_run(unequal_rows(), law), position_run(unequal_rows(), law), 10, 170, 4e-11, 15000);
   expect_same_collisions(gap_run(mixed, law), position_run(mixed, law), 5, 100, 4e-11, 5000);
-}
-
-// Whom each particle met, in order. Collisions that have no particle in common commute, and particles may pass each
-// other: so this is what two runs must have in common.
-using Meetings = std::map<ParticleIndex, std::vector<ParticleIndex>>;
-void note(Meetings& meetings, ParticleIndex left, ParticleIndex right) {
-  meetings[left].push_back(right);
-  meetings[right].push_back(left);
-}
-
-template <class Chain, class Law>
-void expect_as_by_plain_search(const Scene<double>& particles, const Law& collide, double end,
-                               std::uint64_t least_collisions, std::uint64_t least_merges = 0) {
-  Simulation run(collide, Chain(particles, 0.));
-  Meetings of_run, of_loop;
-  run.advance(end, [&](const Collision<double>& collision) { note(of_run, collision.left, collision.right); });
-  SlowLoop loop(collide, Chain(particles, 0, true));
-  for (std::uint64_t n = 0; n < run.counts().collisions; ++n) {
-    const auto s = loop.next();
-    ASSERT_TRUE(s.has_value());
-    note(of_loop, loop.chain().particle(*s), loop.chain().particle(loop.chain().right(*s)));
-    loop.collide(*s);
-  }
-  EXPECT_GE(run.counts().collisions, least_collisions);
-  EXPECT_GE(run.counts().merges, least_merges);
-  EXPECT_TRUE(of_run == of_loop);
-}
-
-TEST(Twins, QueueAndPlainSearchMakeTheSameCollisions) {
-  expect_as_by_plain_search<GapChain<double>>(rshock<double>(400), law, 150, 1000);
-  expect_as_by_plain_search<ClusterChain<double>>(rshock<double>(200), Wet<double>(0.01), 100, 501, 51);
-  expect_as_by_plain_search<ClusterChain<double>>(unequal_rows(), Wet<double>(0.02), 100, 501, 51);
+  for (const auto& masses : {unequal_rows<double>({}, three_masses), cold_gas(32, HotPlace::middle)})
+    expect_same_collisions(mass_run(masses, law), position_run(masses, law), 10, 100, 4e-11, 400);
 }
 
 TEST(Twins, StepsOfSeveralRunsSideBySideDoNotChangeABit) {
@@ -102,33 +67,33 @@ TEST(Twins, StepsOfSeveralRunsSideBySideDoNotChangeABit) {
   }
 }
 
-// In absolute positions, all particles moved from collision to collision and the next one found by looking at every
-// pair; of a line, a ring so large that nothing comes round. With 50 digits neither side's rounding, 1e-50, shows
-// within some 1e20 of amplification, which 500 collisions are far from; a wrong collision would be off by orders of the
-// spacing.
+// In absolute positions, the next collision found by looking at every pair. With 50 digits neither side's rounding,
+// 1e-50, shows within some 1e20 of amplification, which 500 collisions are far from; a wrong collision would be off by
+// orders of the spacing.
 TEST(Twins, WetGapsAndPositionsMakeTheSameCollisions) {
   using Wide = Digits<50>;
   const auto mass = [](ParticleIndex i) { return Wide(1 + bits_of(i, 40, 7)) / Wide(4); };
-  const auto on_line = as_list(*rmix<Wide>(60), mass), large_ring = as_list(*rmix<Wide>(60), mass, Wide(1 << 20));
+  const auto on_line = as_list(*rmix<Wide>(60), mass);
   for (const double loss : {.0025, 0.025, .25}) {
     SCOPED_TRACE(loss);
     Simulation run(Wet<Wide>{Wide(loss)}, ClusterChain<Wide>(on_line, Wide(0)));
-    SlowRing<Wide> twin(*large_ring);
+    auto twin = gas_like(*on_line);
+    twin.law = GasLaw::wet, twin.loss = Wide(loss);
     for (int t = 10; t <= 120; t += 10) {
       ASSERT_EQ(run.advance(Wide(t)), Status::reached);
-      twin.advance(Wet<Wide>{Wide(loss)}, Wide(t));
+      twin.advance(Wide(t));
       ASSERT_EQ(run.counts().collisions, twin.collisions) << t;
       ASSERT_EQ(run.counts().merges, twin.merges) << t;
       const auto c = run.configuration(Wide(t));
-      const auto particles = twin.unfolded();
       ASSERT_EQ(c.from, 0);
       ASSERT_EQ(c.to, 59);
-      ASSERT_EQ(c.x.size(), particles.size());
-      for (std::size_t j = 0; j < particles.size(); ++j) {
-        ASSERT_EQ(c.index[j], particles[j].index) << t;
-        ASSERT_EQ(c.m[j], particles[j].m) << t;
-        ASSERT_LE(abs(c.x[j] - particles[j].x), Wide(1e-30)) << t << ", particle " << c.index[j];
-        ASSERT_LE(abs(c.v[j] - particles[j].v), Wide(1e-30)) << t << ", particle " << c.index[j];
+      ASSERT_EQ(c.x.size(), twin.cells.size());
+      for (std::size_t j = 0; j < c.x.size(); ++j) {
+        const auto& cell = twin.cells[j];
+        ASSERT_EQ(c.index[j], cell.particles.front()) << t;
+        ASSERT_EQ(c.m[j], cell.m) << t;
+        ASSERT_LE(abs(c.x[j] - twin.place(cell)), Wide(1e-30)) << t << ", particle " << c.index[j];
+        ASSERT_LE(abs(c.v[j] - twin.velocity(cell)), Wide(1e-30)) << t << ", particle " << c.index[j];
       }
     }
     EXPECT_GT(run.counts().collisions, 60U);
@@ -136,4 +101,4 @@ TEST(Twins, WetGapsAndPositionsMakeTheSameCollisions) {
   }
 }
 
-}  // namespace twins_test
+}  // namespace cradle::test::twins_test

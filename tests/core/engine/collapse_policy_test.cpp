@@ -8,16 +8,13 @@
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/core/three_collapses.hpp"
 
-namespace collapse_policy_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::collapse_policy_test {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
 class CollapsePolicies : public testing::TestWithParam<ThreeCollapse> {
  protected:
-  Inelastic<double> law() const { return Inelastic(GetParam().restitution); }
+  Inelastic<double> law() const { return Inelastic(GetParam().restitution()); }
   double collapse_time() const { return std::stod(GetParam().collapse_time); }
   auto stopping_run(double stop_gap) const {
     return gap_run(three_particles(), law(), {CollapsePolicy::stop, stop_gap, {}});
@@ -49,8 +46,8 @@ TEST_P(CollapsePolicies, StopSettlesTheCollapseTime) {
   EXPECT_LE(report.uncertainty, 27 * epsilon);
   EXPECT_LE(run.counts().collisions, GetParam().plain_clock_stops);
   // Intervals between collisions at the same gap span two collisions.
-  const double plus_minus = 1 + GetParam().restitution, a = plus_minus / 2;
-  const double root = std::sqrt(a * a - 4 * GetParam().restitution), factor = (a - root) / (a + root);
+  const double plus_minus = 1 + GetParam().restitution(), a = plus_minus / 2;
+  const double root = std::sqrt(a * a - 4 * GetParam().restitution()), factor = (a - root) / (a + root);
   EXPECT_NEAR(report.ratio, factor * factor, report.ratio_uncertainty + 4 * epsilon * factor * factor);
   EXPECT_LE(report.ratio_uncertainty, 1e3 * epsilon * factor * factor);
   EXPECT_EQ(report.last_collision, run.last_collision_time());
@@ -59,16 +56,16 @@ TEST_P(CollapsePolicies, StopSettlesTheCollapseTime) {
 
 // The last gap is at the end of the range.
 TEST_P(CollapsePolicies, StopAtAGapMakesExactlyTheCollisionsItTakes) {
-  const std::pair<double, std::optional<int>> decades[] = {{1e-16, GetParam().passes_e16},
-                                                           {1e-34, GetParam().passes_e34},
-                                                           {1e-100, GetParam().passes_e100},
-                                                           {1e-290, std::nullopt}};
+  const std::pair<double, std::optional<std::uint64_t>> decades[] = {{1e-16, GetParam().passes[0]},
+                                                                     {1e-34, GetParam().passes[1]},
+                                                                     {1e-100, GetParam().passes[2]},
+                                                                     {1e-290, std::nullopt}};
   for (const auto& [gap, collisions] : decades) {
     SCOPED_TRACE(gap);
     auto run = stopping_run(gap);
     ASSERT_EQ(run.advance(1e6), Status::collapsed);
     if (collisions) {
-      EXPECT_EQ(run.counts().collisions, static_cast<std::uint64_t>(*collisions));
+      EXPECT_EQ(run.counts().collisions, *collisions);
     }
     EXPECT_LT(run.collapse().gap, gap);
     EXPECT_GT(run.collapse().gap, gap / 256);  // a collision takes it down by lam- > 1/50
@@ -90,7 +87,7 @@ TEST_P(CollapsePolicies, WithoutAPolicyTheRunEndsWhereGapsUnderflow) {
 
 TEST_P(CollapsePolicies, CutoffLetsTheParticlesPart) {
   // Below the cut-off the three particles are elastic and separate after at most three more collisions.
-  auto run = gap_run(three_particles(), Inelastic<double>(GetParam().restitution, 1e-5));
+  auto run = gap_run(three_particles(), Inelastic<double>(GetParam().restitution(), 1e-5));
   ASSERT_EQ(run.advance(1e6), Status::reached);
   EXPECT_GT(run.counts().below_cutoff, 0U);
   EXPECT_LE(run.counts().below_cutoff, 3U);
@@ -190,8 +187,7 @@ TEST(CollapsePolicies, SqueezedParticlesAreNotTakenForACollapse) {
 // to there the same as with a gap that is given.
 TEST(ManyParticles, EndWithoutAProof) {
   for (const double restitution : {.5, .8}) {
-    const Scene<double> rows =
-        std::make_shared<Rows<double>>(symmetric_rows<double>(200, .5, 1., uniform_displacement(.3, 1, 0)));
+    const Scene<double> rows = uniform_rows(200, .3, 1);
     auto run = gap_run(rows, Inelastic<double>(restitution), {CollapsePolicy::stop, 0, {}});
     ASSERT_EQ(run.advance(1e4), Status::collapsed);
     EXPECT_FALSE(run.collapse().settled);
@@ -220,4 +216,4 @@ TEST(ManyParticles, AProvedCollapseIsFollowedAsBefore) {
   EXPECT_NEAR(run.collapse().time.value(), 12. / 7, run.collapse().uncertainty);
 }
 
-}  // namespace collapse_policy_test
+}  // namespace cradle::test::collapse_policy_test

@@ -10,10 +10,7 @@
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/core/rational.hpp"
 
-namespace elastic_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::elastic_test {
 
 template <class T> struct Free {
   std::vector<T> x, v;  // tracers at time t, sorted by place
@@ -131,4 +128,4 @@ TEST(Elastic, ExactInRationalArithmetic) {
   expect_free_flight(position_run(particles, law), *particles, {1, 5, 20, 100, 1000});
 }
 
-}  // namespace elastic_test
+}  // namespace cradle::test::elastic_test

@@ -13,10 +13,7 @@
 #include "cradle/tests/core/between_walls.hpp"
 #include "cradle/tests/core/rational.hpp"
 
-namespace energy_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::energy_test {
 
 constexpr double u = std::numeric_limits<double>::epsilon() / 2;
 
@@ -170,4 +167,4 @@ TEST(Energy, OfElasticParticlesStays) {
   }
 }
 
-}  // namespace energy_test
+}  // namespace cradle::test::energy_test

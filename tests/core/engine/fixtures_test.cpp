@@ -13,10 +13,7 @@
 #include "cradle/core/observe/configuration_statistics.hpp"
 #include "cradle/tests/core/fixtures.hpp"
 
-namespace fixtures_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::fixtures_test {
 
 struct Row {
   double time;
@@ -97,4 +94,4 @@ TEST(Fixtures, WetShockOfThePapersFigure11HoldsOnlyTheActiveZone) {
                   {{1e5, 299358, 99994, 2487499.86929305}, {1e6, 2999594, 999992, 2375000.15424516508}});
 }
 
-}  // namespace fixtures_test
+}  // namespace cradle::test::fixtures_test

@@ -12,10 +12,7 @@
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/texts.hpp"
 
-namespace misuse_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::misuse_test {
 
 constexpr double infinity = std::numeric_limits<double>::infinity(), nan = std::numeric_limits<double>::quiet_NaN();
 
@@ -32,7 +29,6 @@ void expect_refused(const std::function<void()>& construct, const std::string& w
 Scene<double> ring_of(std::vector<double> x, std::vector<double> v, double circumference) {
   return std::make_shared<List<double>>(std::move(x), std::move(v), std::vector<double>{}, circumference);
 }
-std::int64_t still(ParticleIndex) { return 0; }
 
 TEST(Misuse, UnequalMassesInAChainForIdenticalOnes) {
   const auto particles = list<double>({0, 1, 2}, {1, 0, -1}, {3, 3, 5});
@@ -163,4 +159,4 @@ TEST(Misuse, RingsOfNumbersThatAreNone) {
   expect_refused([] { Ring<double>(3, -2, 1, still, still); }, "length or variance", "length -2");
 }
 
-}  // namespace misuse_test
+}  // namespace cradle::test::misuse_test

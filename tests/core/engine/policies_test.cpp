@@ -8,10 +8,7 @@
 #include "cradle/core/observe/configuration_statistics.hpp"
 #include "cradle/tests/core/fixtures.hpp"
 
-namespace policies_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::policies_test {
 
 TEST(ContactTime, OnlyRestedParticlesDissipate) {
   // Collisions of the plain law at t = 1, then ever faster: with t_c above all later intervals only the first
@@ -86,4 +83,4 @@ TEST(Merging, TheLedgerHolds) {
   EXPECT_EQ(run.chain().account().order_lost, 0U);
 }
 
-}  // namespace policies_test
+}  // namespace cradle::test::policies_test

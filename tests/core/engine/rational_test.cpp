@@ -11,10 +11,7 @@
 #include "cradle/tests/core/rational.hpp"
 #include "cradle/tests/core/slow_loop.hpp"
 
-namespace rational_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::rational_test {
 
 constexpr double u = std::numeric_limits<double>::epsilon() / 2;
 
@@ -151,4 +148,4 @@ TEST(Rational, ObserversTakeRationals) {
   EXPECT_EQ(p.density[0] * 200, 12);
 }
 
-}  // namespace rational_test
+}  // namespace cradle::test::rational_test

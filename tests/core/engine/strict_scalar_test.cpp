@@ -13,10 +13,7 @@
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/core/strict_real.hpp"
 
-namespace strict_scalar_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::strict_scalar_test {
 
 static_assert(Real<StrictReal>);
 static_assert(!std::convertible_to<double, StrictReal> && !std::convertible_to<int, StrictReal>);
@@ -115,4 +112,4 @@ TEST(StrictScalar, Observers) {
   EXPECT_EQ(observe(StrictReal(0)), observe(0.));
 }
 
-}  // namespace strict_scalar_test
+}  // namespace cradle::test::strict_scalar_test

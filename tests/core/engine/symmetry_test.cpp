@@ -13,10 +13,7 @@
 #include "cradle/tests/core/compare.hpp"
 #include "cradle/tests/core/fixtures.hpp"
 
-namespace symmetry_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::symmetry_test {
 
 using Values = std::vector<double>;
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
@@ -185,4 +182,4 @@ TEST(WetSymmetry, Units) {
   expect_same_in_other_units({state_of(rshock<double>(200), one), Wet(0.01), 200, 0, 101}, Wet(0.01 * 8 / 64 / 64));
 }
 
-}  // namespace symmetry_test
+}  // namespace cradle::test::symmetry_test

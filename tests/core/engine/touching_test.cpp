@@ -9,10 +9,7 @@
 #include "cradle/tests/core/rational.hpp"
 #include "cradle/tests/core/segmented.hpp"
 
-namespace touching_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::touching_test {
 
 // Particles on a ring with velocities in units of 2^-12 and displacements in units of 2^-12, the second half of them
 // moving as the first one does but the other way, so that there is no mean to take off.
@@ -113,4 +110,4 @@ TEST(Touching, LaterThanRoundingIsCountedOnceTheOriginHasMoved) {
   for (const double units : {100., 1e6, 1e12}) EXPECT_EQ(orders_lost(units), 1U) << units;
 }
 
-}  // namespace touching_test
+}  // namespace cradle::test::touching_test

@@ -15,8 +15,7 @@
 
 #include "cradle/tests/core/replicas.hpp"
 
-namespace cradle::test {
-namespace ensemble_test {
+namespace cradle::test::ensemble_test {
 
 template <class E> class Executors : public testing::Test {};
 #ifdef __SANITIZE_THREAD__  // Debian's oneTBB is not instrumented
@@ -176,5 +175,4 @@ TYPED_TEST(Executors, MemoryGrowsWithThreadsNotWithReplicas) {
   }
 }
 
-}  // namespace ensemble_test
-}  // namespace cradle::test
+}  // namespace cradle::test::ensemble_test

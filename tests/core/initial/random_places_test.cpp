@@ -2,23 +2,19 @@
 // the distance. Proves: gaps and places have the exact distributions, by the bound of Dvoretzky, Kiefer and Wolfowitz
 // (Massart, Ann. Probab. 18, 1269, 1990): an empirical distribution of n independent numbers is further than c/sqrt(n)
 // from the true one with a probability of at most 2 exp(-2 c^2); masses, energy and momentum are sums of those of the
-// particles; what is streamed is what is held.
+// particles. (What is streamed is what is held: engine/same_bits_test.cpp.)
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
-#include "cradle/core/initial/cold.hpp"
 #include "cradle/core/initial/gas.hpp"
 #include "cradle/core/initial/poisson.hpp"
-#include "cradle/tests/core/initial/streamed.hpp"
+#include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/core/observe/placed.hpp"
 
-namespace random_places_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::random_places_test {
 
 constexpr ParticleIndex many = 20000;
 
@@ -103,7 +99,7 @@ TEST(PoissonPositions, RowsOnEitherSideOfTheOriginAreAlike) {
 TEST(PoissonPositions, RingsAndGasesHaveUniformPlaces) {
   const double length = 3 * many;
   const Ring<double> ring(many, length, 1., gaussian_velocity(2, 0), uniform_places(many, 2, 0));
-  const Gas<double> gas(many, 0., length, 1., gaussian_velocity(2, 0), uniform_places(many, 2, 0));
+  const cradle::Gas<double> gas(many, 0., length, 1., gaussian_velocity(2, 0), uniform_places(many, 2, 0));
   std::vector<double> places, gaps;
   double sum = 0;
   for (ParticleIndex p = 0; p < many; ++p) {
@@ -125,7 +121,8 @@ TEST(PoissonPositions, FewPlacesOfManyReplicasAreUniform) {
   for (const ParticleIndex count : {1, 2, 3}) {
     std::vector<double> places, first;
     for (std::uint64_t replica = 0; replica < 4000; ++replica) {
-      const Gas<double> gas(count, -1., 2., 1., gaussian_velocity(5, replica), uniform_places(count, 5, replica));
+      const cradle::Gas<double> gas(count, -1., 2., 1., gaussian_velocity(5, replica),
+                                    uniform_places(count, 5, replica));
       first.push_back((gas.position(0) + 1) / 2);
       // One of the places, drawn by the parity of other random numbers, is one uniform number.
       places.push_back(
@@ -189,7 +186,7 @@ TEST(RandomNumbers, OfMassesPlacesAndVelocitiesAreIndependent) {
 TEST(Gas, HasTheSumsOfItsParticlesAndFillsTheRoom) {
   const MassPattern<double> masses(.5, 2., 500, 9, 0);
   for (const auto& displacement : {uniform_displacement(0, 9, 0), uniform_places(500, 9, 0)}) {
-    const Gas<double> gas(500, -20., 1000., 1.5, gaussian_velocity(9, 0), displacement, masses);
+    const cradle::Gas<double> gas(500, -20., 1000., 1.5, gaussian_velocity(9, 0), displacement, masses);
     double energy = 0, momentum = 0, square = 0;
     for (ParticleIndex p = 0; p < 500; ++p) {
       const double m = gas.mass(p), v = gas.velocity(p);
@@ -204,7 +201,7 @@ TEST(Gas, HasTheSumsOfItsParticlesAndFillsTheRoom) {
     EXPECT_NEAR(gas.momentum(), momentum, 1e-10);
     EXPECT_LT(std::abs(square - 500), deviations * std::sqrt(2 * 500.));  // variance 2 each
   }
-  const Gas<double> even(4, 1., 2., 1., gaussian_velocity(9, 0), uniform_displacement(0, 9, 0));
+  const cradle::Gas<double> even(4, 1., 2., 1., gaussian_velocity(9, 0), uniform_displacement(0, 9, 0));
   EXPECT_EQ(even.position(0), 1.25);
   EXPECT_EQ(even.position(3), 2.75);
   EXPECT_EQ(even.gap(1), 0.5);
@@ -250,21 +247,10 @@ TEST(FallingDensity, OfAPoissonProcessIsOneToo) {
 TEST(FallingDensity, RefusesWhatHasNoDistance) {
   EXPECT_THROW(falling(HotPlace::left, 1, uniform_displacement(0, 1, 0)), std::invalid_argument);
   EXPECT_THROW(falling(HotPlace::left, .999, uniform_displacement(0, 1, 0)), std::invalid_argument);  // 10^3300
-  EXPECT_THROW(Gas<double>(3, 0., -1., 1., gaussian_velocity(1, 0), uniform_places(3, 1, 0)), std::invalid_argument);
+  EXPECT_THROW(cradle::Gas<double>(3, 0., -1., 1., gaussian_velocity(1, 0), uniform_places(3, 1, 0)),
+               std::invalid_argument);
   EXPECT_THROW(MassPattern<double>(2., 1., 5, 1, 0), std::invalid_argument);
   EXPECT_THROW(uniform_places(0, 1, 0), std::invalid_argument);
-}
-
-TEST(RandomPlaces, StreamedIsHeldInAnyCadence) {
-  const auto places = poisson_displacement(
-      2001, 1000, true, [](ParticleIndex p) { return 2 * (p - 1000); }, 3, 0);
-  const Inelastic<double> law(0.9, 1e-2);
-  for (const auto& gas : {falling(HotPlace::middle, 0, places), falling(HotPlace::middle, 0.5, places),
-                          Scene<double>(std::make_shared<Rows<double>>(poisson_rows(300, 300, false)))}) {
-    const auto streamed =
-        expect_streamed_is_held([&](Options options) { return gap_run(gas, law, {}, 0., options); }, {10., 80.});
-    EXPECT_GT(streamed.counts().collisions, 20U);
-  }
 }
 
 // Mean-square displacement of identical elastic particles, rho = T = 1, from Poisson positions (Jepsen, J. Math. Phys.
@@ -291,4 +277,4 @@ TEST(PoissonPositions, DiffuseAsJepsenComputed) {
   }
 }
 
-}  // namespace random_places_test
+}  // namespace cradle::test::random_places_test

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 #include <utility>
 
 #include <gtest/gtest.h>
@@ -14,10 +13,7 @@
 #include "cradle/tests/core/between_walls.hpp"
 #include "cradle/tests/core/compare.hpp"
 
-namespace gravity_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::gravity_test {
 
 template <class Run> std::vector<double> times_of(Run& run, double until) {
   std::vector<double> times;
@@ -358,4 +354,4 @@ TEST(Gravity, WhereItCannotBeIsSaid) {
   EXPECT_NO_THROW(gap_run<double>(between(0, particles), Inelastic<double>(1)));
 }
 
-}  // namespace gravity_test
+}  // namespace cradle::test::gravity_test

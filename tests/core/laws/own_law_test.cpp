@@ -8,10 +8,7 @@
 #include "cradle/tests/core/compare.hpp"
 #include "cradle/tests/core/fixtures.hpp"
 
-namespace own_law_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::own_law_test {
 
 template <Real T> class Softening {
  public:
@@ -64,4 +61,4 @@ TEST(OwnLaw, GapsAndPositionsAgreeAndTheLedgerIsTheDirectSum) {
   EXPECT_NEAR(momentum_gained(now, *particles), 0, rounding);
 }
 
-}  // namespace own_law_test
+}  // namespace cradle::test::own_law_test

@@ -1,20 +1,16 @@
 // Shaken walls: the account of energy; frames; the bouncing ball and its first period doubling; a particle that rests
-// on a floor and is let go; what is refused. Gaps against positions and mirrors are in gravity_test.cpp.
+// on a floor; what is refused. Gaps against positions and mirrors are in gravity_test.cpp, when what rests is let go in
+// resting_test.cpp.
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <string>
 
 #include <gtest/gtest.h>
 
 #include "cradle/core/chains/cluster_chain.hpp"
 #include "cradle/tests/core/between_walls.hpp"
 
-namespace shaken_walls_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::shaken_walls_test {
 
 // A column on a shaken floor for a long time: the accounts and the closure drift by rounding alone.
 TEST(ShakenWalls, AccountsHoldForLong) {
@@ -146,33 +142,6 @@ TEST(ShakenWalls, ABallComesToRest) {
     }
 }
 
-// From rest on A sin(omega t) a ball is let go where A omega^2 sin(omega t) = g, at the speed of the floor there. Then
-// it flies freely.
-TEST(ShakenWalls, ABallIsLetGoAtTheExactTime) {
-  const double amplitude = 0.25, omega = 3, phi = std::asin(1 / (amplitude * omega * omega)), go = phi / omega;
-  const auto floor = wall(0, shaken(Shape::sine, amplitude, 0, omega), 0.25, 0, 0.5);
-  // It meets the floor soon after the lowest place, so slowly that it stays.
-  const double start = 0.75 * 2 * std::numbers::pi / omega;
-  const auto particles = between(-1, list<double>({1e-3}, {amplitude * omega}), floor);
-  auto run = falling(particles, Inelastic<double>(1));
-  const double period = 2 * std::numbers::pi / omega;
-  ASSERT_EQ(run.advance(start), Status::reached);
-  int flights = 0;
-  for (int k = 1; k < 50; ++k) {
-    const double after = 0.05, t = go + k * period;
-    ASSERT_EQ(run.advance(t + after), Status::reached);
-    if (run.last_collision_time() > t) continue;  // it was flying
-    const double x = amplitude * std::sin(phi) + amplitude * omega * std::cos(phi) * after - after * after / 2;
-    const double gap = run.chain().gap_at(run.chain().first(), run.chain().local_time(t + after));
-    if (std::abs(configuration_at(run, t + after).x[0] - x) > 1e-6) continue;
-    ++flights;
-    EXPECT_NEAR(configuration_at(run, t + after).x[0], x, 1e-13);
-    // For a short time the gap is A omega^3 cos(phi) t^3/6 less what the next order has.
-    EXPECT_NEAR(gap, amplitude * omega * omega * omega * std::cos(phi) * after * after * after / 6, gap / 4);
-  }
-  EXPECT_GT(flights, 5);
-}
-
 // A wall that presses again, after the phase at which it would let go, holds until its next turn: a sine that
 // accelerates by 2 p lets go at a twelfth of a turn, the parabola in the middle, the sawtooth at its tip.
 TEST(ShakenWalls, AWallHoldsUntilItLetsGo) {
@@ -211,4 +180,4 @@ TEST(ShakenWalls, WhereTheyCannotBeIsSaid) {
   EXPECT_THROW(ClusterChain<double>(with_sine, 0.), std::invalid_argument);
 }
 
-}  // namespace shaken_walls_test
+}  // namespace cradle::test::shaken_walls_test

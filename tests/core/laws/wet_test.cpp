@@ -10,10 +10,7 @@
 #include "cradle/core/observe/clusters.hpp"
 #include "cradle/tests/core/fixtures.hpp"
 
-namespace wet_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::wet_test {
 
 TEST(WetLaw, ThresholdFromBothSides) {
   // u0 = 1/2, E = 1/4: closing at 1, mu = 1/2, sqrt(2 E/mu) = 1 exactly; equality merges.
@@ -129,4 +126,4 @@ TEST(WetShock, SlowFig11ToTheEnd) {
   EXPECT_LE(run.chain().slots(), 300U);  // of 2e7 particles
 }
 
-}  // namespace wet_test
+}  // namespace cradle::test::wet_test

@@ -10,10 +10,7 @@
 #include "cradle/tests/core/observe/placed.hpp"
 #include "cradle/tests/core/saved.hpp"
 
-namespace averages_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::averages_test {
 
 constexpr std::size_t batches = TimeAverages::batches;
 
@@ -105,4 +102,4 @@ TEST(TimeAverages, WithoutExtentAreRefused) {
   EXPECT_THROW(TimeAverages({0, 1}, 1, batches - 1), std::invalid_argument);
 }
 
-}  // namespace averages_test
+}  // namespace cradle::test::averages_test

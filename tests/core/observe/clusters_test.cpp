@@ -8,10 +8,7 @@
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/core/observe/placed.hpp"
 
-namespace clusters_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::clusters_test {
 
 Configuration<double> five_clusters() {
   Configuration<double> c = placed({-4, -1, 0, 2, 5}, {1, -1, 0, 2, -1}, {9, 3, 1, 5, 20});
@@ -118,4 +115,4 @@ TEST(Zone, NoWidthWithoutAFall) {
   EXPECT_THROW(ZoneAverage(0, 20, 16, 1), std::invalid_argument);
 }
 
-}  // namespace clusters_test
+}  // namespace cradle::test::clusters_test

@@ -13,10 +13,7 @@
 #include "cradle/tests/core/saved.hpp"
 #include "cradle/tests/core/strict_real.hpp"
 
-namespace correlations_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::correlations_test {
 
 TEST(OctaveSteps, AreEightInEveryOctave) {
   EXPECT_EQ(octave_steps(40), (std::vector<std::uint64_t>{1,  2,  3,  4,  5,  6,  7,  8,  9,  10, 11, 12, 13,
@@ -229,4 +226,4 @@ TEST(TaggedParticles, NeedOnlyWhatARealNumberHas) {
   EXPECT_EQ(tagged.velocity(), (std::vector<double>{-1, 1}));
 }
 
-}  // namespace correlations_test
+}  // namespace cradle::test::correlations_test

@@ -10,10 +10,7 @@
 
 #include "cradle/tests/core/observe/placed.hpp"
 
-namespace dense_core_test {
-
-using namespace cradle;
-using cradle::test::placed;
+namespace cradle::test::dense_core_test {
 
 TEST(DenseCore, IsTheShortestHalfAndAsMuchOnEitherSide) {
   // 15 particles, 8 of which are more than half: 0 to 7 of the eleven that are 1 apart.
@@ -85,4 +82,4 @@ TEST(DenseCore, OfRandomParticlesIsThatOfItsDefinition) {
   }
 }
 
-}  // namespace dense_core_test
+}  // namespace cradle::test::dense_core_test

@@ -2,6 +2,10 @@
 // quantity that is far too small to be seen in a result.
 #include <gtest/gtest.h>
 
+#include <functional>
+#include <limits>
+#include <optional>
+
 #include "cradle/core/chains/cluster_chain.hpp"
 #include "cradle/core/engine/sticky_gas.hpp"
 #include "cradle/core/initial/walled.hpp"
@@ -9,10 +13,7 @@
 #include "cradle/core/observe/guards.hpp"
 #include "cradle/tests/core/fixtures.hpp"
 
-namespace guards_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::guards_test {
 
 using Dry = Inelastic<double>;
 
@@ -64,60 +65,47 @@ TEST(Guards, KnowTheWorkOfWallsThatRoundingMoves) {
   }
 }
 
-class Broken : public testing::Test {
- protected:
-  Broken() : particles_(uniform_rows(300)), run_(Dry(0.99, 1e-3), GapChain<double>(particles_, 0.)) {
-    run_.advance(200);
-    now_ = run_.configuration(200);
+// Errors planted in a configuration, and the guard that finds each.
+TEST(Guards, FindAnErrorOfTheirOwnQuantity) {
+  const auto particles = uniform_rows(300);
+  Simulation run(Dry(0.99, 1e-3), GapChain<double>(particles, 0.));
+  run.advance(200);
+  const double nan = std::numeric_limits<double>::quiet_NaN(), last = run.last_collision_time();
+  using Changed = Configuration<double>;
+  const struct {
+    const char* name;
+    std::optional<Guard> guard;
+    std::function<void(Changed&)> plant;
+  } rows[] = {
+      {"particles that have changed places", Guard::order, [](Changed& c) { c.gap[40] = -1e-6; }},
+      {"a collision that is still to come", Guard::past, [=](Changed& c) { c.time = last - 1e-6; }},
+      {"a time that is rounded anew from an origin that has moved", std::nullopt,
+       [=](Changed& c) { c.time = std::nextafter(last, 0.); }},
+      // Momentum stays: two particles that differ by 1 in velocity are brought nearer by a part in a million.
+      {"energy", Guard::energy,
+       [](Changed& c) {
+         const double nearer = 1e-6 * (c.v[60] > c.v[30] ? -1 : 1);
+         c.v[30] += nearer, c.v[60] -= nearer;
+       }},
+      // Energy stays: a particle that is turned round.
+      {"momentum", Guard::momentum, [](Changed& c) { c.v[10] = -c.v[10]; }},
+      {"closure of gaps", Guard::closure, [](Changed& c) { c.closure_gap = 1e-5; }},
+      {"closure of speeds", Guard::closure, [](Changed& c) { c.closure_speed = -1e-6; }},
+      {"a gap that is no number", Guard::order, [=](Changed& c) { c.gap[40] = nan; }},
+      {"a velocity that is none either", Guard::energy, [=](Changed& c) { c.gap[40] = c.v[5] = nan; }},
+  };
+  for (const auto& row : rows) {
+    SCOPED_TRACE(row.name);
+    Configuration<double> now = run.configuration(200);
+    row.plant(now);
+    const auto broken = inspect(run, *particles, now).broken;
+    ASSERT_EQ(broken.has_value(), row.guard.has_value());
+    if (!broken) continue;
+    EXPECT_EQ(broken->guard, *row.guard);
+    if (broken->guard == Guard::order) {
+      EXPECT_EQ(broken->particle, now.index[40]);
+    }
   }
-  void expect(Guard guard) const {
-    const auto check = inspect(run_, *particles_, now_);
-    ASSERT_TRUE(check.broken);
-    EXPECT_EQ(check.broken->guard, guard);
-  }
-
-  std::shared_ptr<const Particles<double>> particles_;
-  Simulation<double, Dry, GapChain<double>> run_;
-  Configuration<double> now_;
-};
-
-TEST_F(Broken, ParticlesThatHaveChangedPlaces) {
-  now_.gap[40] = -1e-6;
-  expect(Guard::order);
-  EXPECT_EQ(inspect(run_, *particles_, now_).broken->particle, now_.index[40]);
-}
-TEST_F(Broken, ACollisionThatIsStillToCome) {
-  now_.time = run_.last_collision_time() - 1e-6;
-  expect(Guard::past);
-}
-TEST_F(Broken, NotATimeThatIsRoundedAnewFromAnOriginThatHasMoved) {
-  now_.time = std::nextafter(run_.last_collision_time(), 0.);
-  EXPECT_FALSE(inspect(run_, *particles_, now_).broken);
-}
-TEST_F(Broken, Energy) {
-  // Momentum stays: two particles that differ by 1 in velocity are brought nearer to each other by a part in a million.
-  now_.v[30] += 1e-6 * (now_.v[60] > now_.v[30] ? -1 : 1);
-  now_.v[60] -= 1e-6 * (now_.v[60] > now_.v[30] ? -1 : 1);
-  expect(Guard::energy);
-}
-TEST_F(Broken, Momentum) {
-  // Energy stays: a particle that is turned round.
-  const double before = now_.v[10];
-  now_.v[10] = -before;
-  expect(Guard::momentum);
-}
-TEST_F(Broken, Closure) {
-  now_.closure_gap = 1e-5;
-  expect(Guard::closure);
-  now_.closure_gap = 0;
-  now_.closure_speed = -1e-6;
-  expect(Guard::closure);
-}
-TEST_F(Broken, WhatIsNoNumber) {
-  now_.gap[5] = std::numeric_limits<double>::quiet_NaN();
-  expect(Guard::order);
-  now_.v[5] = std::numeric_limits<double>::quiet_NaN();
-  expect(Guard::energy);
 }
 
 // Of a run in which a collision with a wall was missed.
@@ -139,4 +127,4 @@ TEST(Guards, FindAParticleBeyondAWall) {
   EXPECT_EQ(on_right->particle, 1);
 }
 
-}  // namespace guards_test
+}  // namespace cradle::test::guards_test

@@ -10,10 +10,7 @@
 #include "cradle/core/initial/walled.hpp"
 #include "cradle/tests/core/segmented.hpp"
 
-namespace histograms_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::histograms_test {
 
 TEST(OctaveBins, HoldTheirNumbers) {
   for (const OctaveBins& bins : {OctaveBins::of_numbers(1e-3, 50), OctaveBins::of_numbers(1e-300, 1e300),
@@ -167,4 +164,4 @@ TEST(Clusters, AreCountedByHand) {
   EXPECT_EQ(clusters({5}, true), (Sizes{1}));
 }
 
-}  // namespace histograms_test
+}  // namespace cradle::test::histograms_test

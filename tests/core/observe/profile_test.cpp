@@ -14,10 +14,7 @@
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/core/observe/placed.hpp"
 
-namespace profile_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::profile_test {
 
 // Of inelastic particles when they start.
 Profile at_start(const Scene<double>& particles, BinRange range, std::size_t bins) {
@@ -194,4 +191,4 @@ TEST(GapStatistics, LeastAndMedian) {
   EXPECT_EQ(gap_statistics(c).median, 3);
 }
 
-}  // namespace profile_test
+}  // namespace cradle::test::profile_test

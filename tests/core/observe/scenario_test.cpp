@@ -10,9 +10,8 @@
 #include "cradle/core/observe/scenario.hpp"
 #include "cradle/tests/core/fixtures.hpp"
 
-namespace scenario_test {
+namespace cradle::test::scenario_test {
 
-using namespace cradle;
 using Regime = Scenario::Regime;
 
 Cloud<double> pair(ParticleIndex left, ParticleIndex right, double mass = 100, double separation = 1) {
@@ -112,4 +111,4 @@ TEST(Scenario, OfARunAsCountedByHand) {
   EXPECT_EQ((found.passes - passes) % 2, 0U);  // an even number goes unseen
 }
 
-}  // namespace scenario_test
+}  // namespace cradle::test::scenario_test

@@ -13,10 +13,7 @@
 #include "cradle/tests/core/observe/placed.hpp"
 #include "cradle/tests/core/saved.hpp"
 
-namespace structure_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::structure_test {
 
 TEST(Turns, HaveTheirSineAndCosine) {
   std::mt19937_64 random(1);
@@ -198,4 +195,4 @@ TEST(SampledMeans, ContinueFromASavedState) {
   expect_continues(SampledMeans(1, 50), 50, 13, add, {SampledMeans(2, 50)});
 }
 
-}  // namespace structure_test
+}  // namespace cradle::test::structure_test

@@ -5,10 +5,7 @@
 
 #include "cradle/tests/core/segmented.hpp"
 
-namespace segmented_runs_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::segmented_runs_test {
 
 const Inelastic<double> law(0.999, 1e-5);
 const Segmentation quick{.gaps = 100, .ghosts = 32, .collisions = 1, .anywhere = true};
@@ -149,4 +146,4 @@ TEST(Segments, WhatAThreadThrowsIsThrownOn) {
   expect_same_state(plain, run, 560.);
 }
 
-}  // namespace segmented_runs_test
+}  // namespace cradle::test::segmented_runs_test

@@ -5,10 +5,7 @@
 
 #include "cradle/tests/core/segmented.hpp"
 
-namespace segments_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::segments_test {
 
 template <class Chain, class T, class Law>
 SlabsMade in_all_segmentations(const Scene<T>& scene, const Law& law, const std::vector<int>& times) {
@@ -85,4 +82,4 @@ TEST(SlowSegments, Figure2ThroughItsCollapse) {
   EXPECT_GT(made.slabs, 1000U);
 }
 
-}  // namespace segments_test
+}  // namespace cradle::test::segments_test

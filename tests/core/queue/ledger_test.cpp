@@ -11,9 +11,7 @@
 
 #include "cradle/core/queue/ledger.hpp"
 
-namespace ledger_test {
-
-using namespace cradle;
+namespace cradle::test::ledger_test {
 
 template <class T> class Ledgers : public testing::Test {};
 using Types = testing::Types<float, double, long double>;
@@ -89,4 +87,4 @@ TYPED_TEST(Ledgers, OfNoEnergyOrTooMuchAreSums) {
   EXPECT_EQ(huge.value(), T(7));
 }
 
-}  // namespace ledger_test
+}  // namespace cradle::test::ledger_test

@@ -5,15 +5,41 @@
 
 #include <cmath>
 #include <random>
+#include <set>
+#include <utility>
+#include <vector>
 
-#include "cradle/tests/core/sorted_list_queue.hpp"
+#include "cradle/core/queue/event_queue.hpp"
 
-namespace queue_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::queue_test {
 
 constexpr double never = EventQueue::never;
+
+// The queue in its plainest form: a list sorted by (time, slot), with exact times.
+class SortedListQueue {
+ public:
+  explicit SortedListQueue(std::size_t slots) : times_(slots, never) {
+    for (Slot s = 0; s < slots; ++s) sorted_.emplace(never, s);
+  }
+
+  void set(Slot s, double time) {
+    sorted_.erase({times_[s], s});
+    times_[s] = time;
+    sorted_.emplace(time, s);
+  }
+  Slot next() const { return sorted_.begin()->second; }
+  double time(Slot s) const { return times_[s]; }
+  std::vector<Slot> before(double time) const {  // at times <= time, from left to right
+    std::set<Slot> slots;
+    for (auto entry = sorted_.begin(); entry != sorted_.end() && entry->first <= time; ++entry)
+      slots.insert(entry->second);
+    return {slots.begin(), slots.end()};
+  }
+
+ private:
+  std::vector<double> times_;
+  std::set<std::pair<double, Slot>> sorted_;
+};
 
 class Queues : public testing::TestWithParam<std::size_t> {
  protected:
@@ -123,4 +149,4 @@ TEST(Queue, RoundedKeysAreCloseWithinTheirRounding) {
   EXPECT_TRUE(rounded.close(rounded.key_of(5), 6));
 }
 
-}  // namespace queue_test
+}  // namespace cradle::test::queue_test

@@ -14,10 +14,7 @@
 #include "cradle/core/theory/splash.hpp"
 #include "cradle/tests/core/fixtures.hpp"
 
-namespace classics_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::classics_test {
 
 const Inelastic<double> elastic(1.);
 
@@ -201,4 +198,4 @@ TEST(SpeedDependentCooling, HasTheEnergyOfTheStickyGas) {
   }
 }
 
-}  // namespace classics_test
+}  // namespace cradle::test::classics_test

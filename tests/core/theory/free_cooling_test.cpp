@@ -12,9 +12,7 @@
 #include "cradle/core/initial/ring.hpp"
 #include "cradle/core/theory/free_cooling.hpp"
 
-namespace free_cooling_test {
-
-using namespace cradle;
+namespace cradle::test::free_cooling_test {
 
 std::shared_ptr<const Ring<double>> gas(ParticleIndex n, double variance) {
   return std::make_shared<Ring<double>>(n, double(n), std::sqrt(variance), gaussian_velocity(1, 0),
@@ -125,4 +123,4 @@ TEST(Collisions, HeatedWallsOfOneTemperatureAreEquilibrium) {
               n * n * length * s / std::sqrt(std::acos(-1)) + 2 * n * s / std::sqrt(2 * std::acos(-1)), 1e-11);
 }
 
-}  // namespace free_cooling_test
+}  // namespace cradle::test::free_cooling_test

@@ -14,10 +14,9 @@
 
 #include "cradle/tests/core/digits.hpp"
 
-namespace inelastic_shock_test {
+namespace cradle::test::inelastic_shock_test {
 
 using namespace cradle::theory;
-using namespace cradle::test;
 
 template <class T> InelasticShock<T> paper_shock(const T& eps) {
   InelasticShock<T> shock{eps};
@@ -140,7 +139,7 @@ TEST(InelasticFront, ElasticRowsPassFreely) {
   EXPECT_EQ(interaction_density(shock, 10.0), 2.0);
   EXPECT_EQ(mean_velocity_slope(shock, 10.0), 0.0);
   EXPECT_EQ(mean_velocity_slope_early(shock), 0.0);
-  EXPECT_EQ(detail::from_count<double>(9007199254740993U), 9007199254740992.0);
+  EXPECT_EQ(cradle::theory::detail::from_count<double>(9007199254740993U), 9007199254740992.0);
 }
 
 // Doubles against Wide at the same (binary) parameters, all the way to eps one ulp below 1.
@@ -269,4 +268,4 @@ TEST(InelasticShock, HasTheScalesOfItsUnits) {
   EXPECT_EQ(*collapse_onset_time(scaled), 8 * *collapse_onset_time(unit));
 }
 
-}  // namespace inelastic_shock_test
+}  // namespace cradle::test::inelastic_shock_test

@@ -15,13 +15,9 @@
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/core/strict_real.hpp"
 
-namespace theory_scalars_test {
+namespace cradle::test::theory_scalars_test {
 
-using namespace cradle;
 using namespace cradle::theory;
-using cradle::test::expect_close;
-using cradle::test::StrictReal;
-using cradle::test::Wide;
 
 template <class... T> std::vector<double> as_doubles(const T&... numbers) { return {to_double(numbers)...}; }
 
@@ -74,7 +70,6 @@ TEST(TheoriesInAStrictScalar, OfStickyShocksAndGases) {
     const auto centre = sticky_centre(shock, T(17));
     auto numbers = as_doubles(centre.mass, centre.position, centre.velocity, centre.from_left, centre.from_right,
                               centre.energy_lost, late_growth(shock), late_velocity(shock), late_power(shock));
-    const auto still = [](ParticleIndex) { return std::int64_t{0}; };
     const auto ring = std::make_shared<Ring<T>>(60, T(60), T(1), gaussian_velocity(2, 0), still);
     for (const int t : {0, 1, 7, 50, 1000})
       for (const test::Scene<T>& particles : {test::rmix<T>(100), test::rshock<T>(100), test::Scene<T>(ring)}) {
@@ -108,4 +103,4 @@ TYPED_TEST(BuiltIn, AgreesWithWideToItsOwnPrecision) {
   expect_close(three_particle_collapse_limit<T>(), three_particle_collapse_limit<Wide>(), few, "7 - 4 sqrt 3");
 }
 
-}  // namespace theory_scalars_test
+}  // namespace cradle::test::theory_scalars_test

@@ -12,10 +12,8 @@
 #include "cradle/core/theory/sticky_shock.hpp"
 #include "cradle/tests/core/fixtures.hpp"
 
-namespace sticky_shock_test {
+namespace cradle::test::sticky_shock_test {
 
-using namespace cradle;
-using namespace cradle::test;
 using theory::StickyShock;
 using Wide = boost::multiprecision::cpp_bin_float_50;
 
@@ -63,6 +61,11 @@ TEST(StickyShockTheory, TendsToItsLateForm) {
     EXPECT_LE(abs(Wide(late.mass / t - theory::late_growth(s))), forgotten);
     EXPECT_LE(abs(Wide(late.velocity - theory::late_velocity(s))), forgotten);
     EXPECT_LE(abs(Wide(late.energy_lost / t - theory::late_power(s))), forgotten);
+    // The Riemann problem: E, Rykov and Sinai 1996, doi 10.1007/BF02101897.
+    const Wide left = sqrt(s.density_left), right = sqrt(s.density_right);
+    expect_zero(theory::late_growth(s) - left * right * (s.velocity_left - s.velocity_right), Wide(1));
+    expect_zero(theory::late_velocity(s) * (left + right) - (left * s.velocity_left + right * s.velocity_right),
+                Wide(1));
     s.mass = 0;
     const auto bare = theory::sticky_centre(s, Wide(3));
     expect_zero(bare.mass - 3 * theory::late_growth(s), bare.mass);
@@ -114,7 +117,6 @@ TEST(StickyShockTheory, RefusesWhatIsNoShock) {
 // slope X, is off by max spacing/(8 M), and each side's count by half a particle and what that makes. Roundings are far
 // below.
 TEST(StickyShockTheory, RowsOfParticlesFollow) {
-  const auto still = [](ParticleIndex) { return std::int64_t{0}; };
   for (const auto& s : shocks) {
     const double left = 1 / s.density_left, right = 1 / s.density_right, closing = s.velocity_left - s.velocity_right;
     const auto rows = std::make_shared<Rows<double>>(
@@ -145,8 +147,7 @@ TEST(StickyShockTheory, RowsOfParticlesFollow) {
 // Row particles k - 1/2 spacings off arrive at (k - 1/2) l/u_0: two floor(u_0 t/l + 1/2) have stuck, on the instant
 // too.
 TEST(StickyShockTheory, SymmetricRowsToTheParticle) {
-  const auto rows =
-      std::make_shared<Rows<double>>(symmetric_rows(40000, 0.5, 1., [](ParticleIndex) { return std::int64_t{0}; }));
+  const auto rows = lattice_rows(40000);
   for (const double t : {0., 0.875, 1., 2.5, 3., 100., 20001., 20000.75, 39999.}) {
     StickyGas<double> gas(rows, 0);
     gas.advance(t);
@@ -173,4 +174,4 @@ TEST(StickyCooling, ConstantsAreMomentsOfChernoffsDistribution) {
   EXPECT_NEAR(theory::sticky_cooling_energy, clusters / 6, u);
 }
 
-}  // namespace sticky_shock_test
+}  // namespace cradle::test::sticky_shock_test

@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-namespace wet_clusters_test {
+namespace cradle::test::wet_clusters_test {
 
 using namespace cradle::theory;
 
@@ -342,4 +342,4 @@ TEST(WetClusters, MirrorImageIsTheSame) {
   EXPECT_FALSE(run.meetings().empty());
 }
 
-}  // namespace wet_clusters_test
+}  // namespace cradle::test::wet_clusters_test

@@ -15,10 +15,9 @@
 
 #include "cradle/tests/core/wet_reference.hpp"
 
-namespace wet_energy_test {
+namespace cradle::test::wet_energy_test {
 
 using namespace cradle::theory;
-using namespace cradle::test;
 
 struct Counted {
   std::uint64_t collisions = 0;
@@ -179,4 +178,4 @@ TEST(WetEnergy, SeriesFollowsFromTheEquations) {
   }
 }
 
-}  // namespace wet_energy_test
+}  // namespace cradle::test::wet_energy_test

@@ -8,16 +8,14 @@
 
 #include <cmath>
 #include <string>
-#include <vector>
 
 #include "cradle/core/theory/wet_energy.hpp"
 #include "cradle/core/theory/wet_zone.hpp"
 #include "cradle/tests/core/wet_reference.hpp"
 
-namespace wet_theory_test {
+namespace cradle::test::wet_theory_test {
 
 using namespace cradle::theory;
-using namespace cradle::test;
 
 // ---- the criterion ----
 
@@ -230,4 +228,4 @@ TEST(WetFront, HasTheScalesOfItsUnits) {
   EXPECT_EQ(larger.force(4 * 0.7), zone.force(0.7) * 2 * 4 / 64);
 }
 
-}  // namespace wet_theory_test
+}  // namespace cradle::test::wet_theory_test

@@ -11,10 +11,9 @@
 
 #include "cradle/tests/core/wet_reference.hpp"
 
-namespace wet_zone_test {
+namespace cradle::test::wet_zone_test {
 
 using namespace cradle::theory;
-using namespace cradle::test;
 
 TEST(WetZone, BothWidthsAgreeAtRootSixOnly) {
   for (const WetTurnover& row : turnovers) {
@@ -142,4 +141,4 @@ TEST(WetZone, ForceKeepsItsDigitsAtTheCentreAndForSmallLosses) {
   }
 }
 
-}  // namespace wet_zone_test
+}  // namespace cradle::test::wet_zone_test

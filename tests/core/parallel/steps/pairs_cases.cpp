@@ -7,15 +7,11 @@
 #include <gtest/gtest.h>
 
 #include <random>
-#include <string>
 
 #include "cradle/precision/double_double.hpp"
 #include "cradle/tests/core/parallel/steps/ways.hpp"
 
-namespace steps_of_pairs_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::steps_of_pairs_test {
 
 using T = double_double;
 using Equal = GapChain<T>;
@@ -77,4 +73,4 @@ TEST_F(StepsOfPairs, SlowFigure2) {
 
 TEST_F(StepsOfPairs, RandomScenes) { expect_same_in_random_scenes<Equal, Unequal>(39); }
 
-}  // namespace steps_of_pairs_test
+}  // namespace cradle::test::steps_of_pairs_test

@@ -16,10 +16,7 @@
 #include "cradle/core/laws/one_of.hpp"
 #include "cradle/tests/core/parallel/steps/ways.hpp"
 
-namespace steps_test {
-
-using namespace cradle;
-using namespace cradle::test;
+namespace cradle::test::steps_test {
 
 using Equal = GapChain<double>;
 using Unequal = GapChain<double, IndividualMasses<double>>;
@@ -244,4 +241,4 @@ TEST_F(Steps, SlowFigure2IntoItsCollapse) {
 
 TEST_F(Steps, RandomScenes) { expect_same_in_random_scenes<Equal, Unequal>(1); }
 
-}  // namespace steps_test
+}  // namespace cradle::test::steps_test

@@ -17,7 +17,6 @@
 #include <limits>
 #include <numbers>
 #include <stdexcept>
-#include <utility>
 #include <vector>
 
 #include "cradle/core/laws/turns.hpp"

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "cradle/core/certify/certain_state.hpp"
 #include "cradle/core/certify/certain_walls.hpp"

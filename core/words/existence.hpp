@@ -1,5 +1,5 @@
 #pragma once
-// The restitutions for which a word has a self-similar state: found approximately, then proved.
+// The restitutions for which a word has a self-similar state are found approximately, then proved.
 //
 //   scan      at many restitutions: eigenvalues, signs of the margins. An interval narrower than the grid is missed.
 //   end       where a margin changes its sign, by the secant method in a long type

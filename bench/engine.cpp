@@ -28,8 +28,7 @@
 #include "cradle/core/ensemble/tbb_executor.hpp"
 #include "cradle/core/laws/law.hpp"
 #include "cradle/core/parallel/segments.hpp"
-#include "twins/heaps.hpp"
-#include "twins/priority_queue.hpp"
+#include "twins/queues.hpp"
 #include "twins/time_slots.hpp"
 
 namespace {

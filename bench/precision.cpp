@@ -32,7 +32,7 @@
 #include "precision/engines.hpp"
 #include "precision/reversal.hpp"
 #include "precision/shock.hpp"
-#include "twins/heaps.hpp"
+#include "twins/queues.hpp"
 
 namespace {
 

@@ -3,11 +3,13 @@
 // numbers are side by side in memory. `Limbs` is the number of limbs (64 bits each) that fit. The precision is one
 // value per process, set before the first number is made and before any thread starts. All operations round to nearest.
 
+#include <cstdint>  // mpfr.h declares its functions of std::intmax_t only after this header
+
 #include <mpfr.h>
 
 #include <array>
 #include <compare>
-#include <cstdint>
+#include <cstddef>
 #include <cstdlib>
 #include <cstring>
 #include <limits>
@@ -15,7 +17,6 @@
 #include <string>
 #include <string_view>
 
-#include "cradle/precision/mpfr_text.hpp"
 #include "cradle/precision/text.hpp"
 
 namespace cradle {
@@ -184,7 +185,26 @@ template <int Limbs> inline constexpr std::string_view cradle::scalar_name<cradl
 
 template <int Limbs> struct cradle::Text<cradle::Mpfr<Limbs>> {
   static Mpfr<Limbs> from(std::string_view literal) { return Mpfr<Limbs>(checked_literal(literal).c_str()); }
-  static std::string to(const Mpfr<Limbs>& x) { return mpfr_text(x.get(), 0); }
+  // With as many digits as are needed to read the same number back in the same precision.
+  static std::string to(const Mpfr<Limbs>& x) {
+    if (mpfr_zero_p(x.get())) return mpfr_signbit(x.get()) ? "-0" : "0";
+    mpfr_exp_t exponent = 0;
+    char* raw = mpfr_get_str(nullptr, &exponent, 10, 0, x.get(), MPFR_RNDN);
+    std::string text = raw;
+    mpfr_free_str(raw);
+    const std::string sign = text.front() == '-' ? "-" : "";
+    std::string figures = text.substr(sign.size());
+    figures.erase(figures.find_last_not_of('0') + 1);
+    const auto size = static_cast<mpfr_exp_t>(figures.size());
+    // 0.figures 10^exponent
+    if (exponent > 0 && exponent <= 21 && exponent >= size)
+      return sign + figures + std::string(static_cast<std::size_t>(exponent - size), '0');
+    if (exponent > 0 && exponent <= 21) return sign + figures.insert(static_cast<std::size_t>(exponent), ".");
+    if (exponent <= 0 && exponent > -5)
+      return sign + "0." + std::string(static_cast<std::size_t>(-exponent), '0') + figures;
+    if (size > 1) figures.insert(1, ".");
+    return sign + figures + "e" + std::to_string(exponent - 1);
+  }
 };
 
 template <int Limbs> struct cradle::SavedNumber<cradle::Mpfr<Limbs>> {

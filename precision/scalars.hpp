@@ -7,7 +7,6 @@
 #include <string>
 #include <tuple>
 #include <type_traits>
-#include <utility>
 
 #include "cradle/precision/bin_float.hpp"
 #include "cradle/precision/double_double.hpp"

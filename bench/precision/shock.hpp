@@ -9,7 +9,6 @@
 //            of one collision differs only there)
 
 #include <algorithm>
-#include <memory>
 #include <optional>
 #include <type_traits>
 

@@ -3,7 +3,7 @@
 // and velocities in double, links between the remaining neighbours, an indexed heap of the times when gaps close. It
 // holds every particle of the scene from the start.
 
-#include "heaps.hpp"
+#include "queues.hpp"
 
 namespace twins {
 

@@ -1,5 +1,5 @@
 #pragma once
-// The logarithm used for random speeds.
+// This logarithm is used for random speeds.
 
 #include <cmath>
 

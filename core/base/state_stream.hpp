@@ -1,5 +1,5 @@
 #pragma once
-// Where states (state.hpp) are saved to and loaded from when they are too large for memory: streams of bytes with a
+// States (state.hpp) that are too large for memory are saved to and loaded from these streams of bytes, which have a
 // buffer. What is behind the buffer, a file with its checksum for instance, is the business of who derives from them.
 
 #include <cstddef>

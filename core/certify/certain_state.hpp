@@ -1,6 +1,6 @@
 #pragma once
-// What a proof (checker.hpp) says: where it is in doubt, and what is certain of all particles at a time. Both are
-// values, which certificates are made from.
+// These values hold what a proof (checker.hpp) says: where it is in doubt, and what is certain of all particles at a
+// time. Certificates are made from them.
 
 #include <algorithm>
 #include <cmath>

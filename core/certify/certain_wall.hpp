@@ -1,6 +1,6 @@
 #pragma once
-// What a wall (laws/wall.hpp) makes of a particle, where all numbers are enclosed. The wall's world line is (A, V),
-// that of the particle (a, v), the closing speed w > 0. A reflecting wall is a particle of infinite mass:
+// A wall (laws/wall.hpp) changes a particle as follows, where all numbers are enclosed. The wall's world line is (A,
+// V), that of the particle (a, v), the closing speed w > 0. A reflecting wall is a particle of infinite mass:
 //
 //   (a, v)' = (a, v) - (1 + r) ((a, v) - (A, V)),
 //

@@ -1,10 +1,9 @@
 #pragma once
-// What is certain of all particles at a time up to which their collisions are proved (checker.hpp): that every gap is
-// positive then and every collision past, and the numbers of a certificate.
+// `Inspection` finds what is certain of all particles at a time up to which their collisions are proved (checker.hpp):
+// that every gap is positive then and every collision past, and the numbers of a certificate.
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "cradle/core/certify/certain_state.hpp"
 #include "cradle/core/certify/certain_walls.hpp"

@@ -1,7 +1,7 @@
 #pragma once
-// Whether the collisions of a chain with watched masses are those of the exact system, as its deviations show
-// (watched_gap.hpp). The first one that may not be is entered in the account; afterwards the motion is that of another
-// system, and nothing more is estimated.
+// `Certainty` tells by its deviations (watched_gap.hpp) whether the collisions of a chain with watched masses are those
+// of the exact system. The first one that may not be is entered in the account; afterwards the motion is that of
+// another system, and nothing more is estimated.
 
 #include <algorithm>
 #include <cmath>

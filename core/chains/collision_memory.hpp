@@ -1,5 +1,5 @@
 #pragma once
-// The time of the last collision at each gap, for laws with a memory (LawWithMemory); empty for all others.
+// This is the time of the last collision at each gap, for laws with a memory (LawWithMemory); it is empty for others.
 
 #include <initializer_list>
 #include <tuple>

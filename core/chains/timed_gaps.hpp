@@ -21,8 +21,6 @@
 #include <concepts>
 #include <cstdint>
 #include <limits>
-#include <utility>
-#include <vector>
 
 #include "cradle/core/base/state.hpp"
 #include "cradle/core/chains/collision_result.hpp"

@@ -1,6 +1,6 @@
 #pragma once
-// How often the event loop does work other than collisions, and when the origin of time moves. Both depend on the
-// history of collisions alone, not on the calls of `advance`.
+// `Pacing` decides how often the event loop does work other than collisions, and when the origin of time moves. Both
+// depend on the history of collisions alone, not on the calls of `advance`.
 //
 // In a small zone reviews come after numbers of collisions. A move of the origin costs as much as a few collisions per
 // gap: it comes with every second collision in a few-particle collapse and otherwise after about 32 collisions per

@@ -1,6 +1,6 @@
 #pragma once
-// Decides which of several collisions is first by (exact time, position in the line), if the queue's keys cannot decide
-// it.
+// `Ties` decides which of several collisions is first by (exact time, position in the line), if the queue's keys cannot
+// decide it.
 //
 // All collisions whose keys may belong to the same time as the root's are candidates, anywhere on the line. Comparing
 // only neighbours would be right for each pair and still wrong: distant collisions would overtake each other within the

@@ -1,5 +1,5 @@
 #pragma once
-// Whether two neighbouring gaps collapse, and when, in closed form, with error bounds (README.md, The theorem).
+// A closed form with error bounds decides whether two neighbouring gaps collapse, and when (README.md, The theorem).
 //
 // The last collision was at gap 1, at time t. One there that closes at w turns its closing speed into -r_1 w and adds
 // c_1 w to that of gap 2; r_2, c_2 likewise. Let u be the speed at which gap 1 opens, g gap 2, w its closing speed, and

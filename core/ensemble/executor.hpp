@@ -1,5 +1,5 @@
 #pragma once
-// Runs work on threads: an executor calls a step again and again, on several threads at once, until it reports that
+// An executor runs work on threads: it calls a step again and again, on several threads at once, until it reports that
 // nothing is left. Programs use the one on oneTBB (tbb_executor.hpp). This one uses plain threads. It exists for
 // ThreadSanitizer, which reports false races inside Debian's oneTBB.
 

@@ -89,10 +89,6 @@ class MomentTree {
     for (const auto& [first, held] : nodes_) all.push_back({first, held.level, *held.moments});
     return all;
   }
-  std::size_t nodes_held() const {
-    const std::scoped_lock lock(mutex_);
-    return nodes_.size();
-  }
 
   /// The number of replicas, failed ones included.
   std::uint64_t size() const {

@@ -84,8 +84,8 @@ HotParticles<T> heated(ParticleIndex first, ParticleIndex count, const T& energy
   return hot;
 }
 
-template <Real T> class Cold final : public PatternedParticles<T> {
-  using PatternedParticles<T>::count_;
+template <Real T> class Cold final : public OnLattice<T> {
+  using OnLattice<T>::count_, OnLattice<T>::displacement_;
 
  public:
   // `falls`: the exponent b of the density, below 1. Throws std::invalid_argument if there are no particles, no hot
@@ -93,9 +93,8 @@ template <Real T> class Cold final : public PatternedParticles<T> {
   // positive, or if particles are not apart.
   Cold(ParticleIndex count, const T& spacing, HotPlace place, HotParticles<T> hot, Displacement displacement,
        MassPattern<T> masses = {}, double falls = 0)
-      : PatternedParticles<T>(count, std::move(masses)), left_(place == HotPlace::left), hot_(std::move(hot)),
-        displacement_(std::move(displacement)), unit_(spacing / T(displacement_unit)), spacing_(spacing),
-        falls_(falls) {
+      : OnLattice<T>(count, T(spacing / T(displacement_unit)), std::move(displacement), std::move(masses)),
+        left_(place == HotPlace::left), hot_(std::move(hot)), spacing_(spacing), falls_(falls) {
     if (hot_.count() < 1 || hot_.first < 0 || hot_.end() > count)
       throw std::invalid_argument("hot particles " + std::to_string(hot_.first) + " to " +
                                   std::to_string(hot_.end() - 1) + " of " + std::to_string(count) +
@@ -121,12 +120,9 @@ template <Real T> class Cold final : public PatternedParticles<T> {
   T velocity(ParticleIndex particle) const override { return hot_.velocity(particle); }
   T position(ParticleIndex particle) const override {
     if (power_) return exactly<T>(spacings(particle)) * spacing_;
-    return place_of<T>(half_steps(particle), displacement_(particle)) * unit_;
+    return place_of<T>(half_steps(particle), displacement_(particle)) * this->unit_;
   }
-  T gap(ParticleIndex particle) const override {
-    if (power_) return uneven_gap(particle);
-    return T(displacement_unit + displacement_(particle + 1) - displacement_(particle)) * unit_;
-  }
+  T gap(ParticleIndex particle) const override { return power_ ? uneven_gap(particle) : OnLattice<T>::gap(particle); }
   T closing_speed(ParticleIndex particle) const override {
     if (!hot_.holds(particle) || !hot_.holds(particle + 1)) return velocity(particle) - velocity(particle + 1);
     const auto pace = hot_.pace.begin() + (particle - hot_.first);
@@ -159,8 +155,7 @@ template <Real T> class Cold final : public PatternedParticles<T> {
 
   bool left_;
   HotParticles<T> hot_;
-  Displacement displacement_;
-  T unit_, spacing_;
+  T spacing_;
   double falls_;
   std::shared_ptr<const Power<double>> power_;  // null in an even gas
 };

@@ -4,8 +4,6 @@
 // velocities are whole numbers times a unit that every scalar type rounds, as on a ring (ring.hpp); but no mean
 // velocity is taken off, since walls do not conserve momentum.
 
-#include <stdexcept>
-#include <string>
 #include <utility>
 
 #include "cradle/core/initial/mass_pattern.hpp"
@@ -15,39 +13,27 @@
 
 namespace cradle {
 
-template <Real T> class Gas final : public PatternedParticles<T> {
-  using PatternedParticles<T>::count_;
+template <Real T> class Gas final : public OnLattice<T> {
+  using OnLattice<T>::displacement_, OnLattice<T>::unit_;
 
  public:
   // From `left` on over `length`. `deviation`: standard deviation of the velocities. Throws std::invalid_argument for
   // no particles, 2^31 or more of them, or a length or deviation that is not positive and finite.
   Gas(ParticleIndex count, T left, T length, T deviation, VelocityDraw velocity, Displacement displacement,
       MassPattern<T> masses = {})
-      : PatternedParticles<T>(count, std::move(masses)), left_(std::move(left)), velocity_(std::move(velocity)),
-        displacement_(std::move(displacement)), unit_(length / (T(count) * T(displacement_unit))),
-        velocity_unit_(deviation / T(displacement_unit)) {
-    if (count < 1 || count >= std::int64_t{1} << 31)
-      throw std::invalid_argument("a gas of " + std::to_string(count) + " particles: give it from 1 to 2147483647");
+      : OnLattice<T>(count, T(length / (T(count) * T(displacement_unit))), std::move(displacement), std::move(masses)),
+        left_(std::move(left)), velocity_(std::move(velocity)), velocity_unit_(deviation / T(displacement_unit)) {
     require_finite(left_, "left end of the gas");
-    require_finite(length, "length of the gas");
-    require_finite(deviation, "standard deviation of the velocities");
-    if (!(length > T(0) && deviation > T(0)))
-      throw std::invalid_argument("length or variance of the gas is not positive (length " + in_message(length) +
-                                  ", standard deviation " + in_message(deviation) + "): give positive numbers");
+    detail::require_gas("gas", count, length, deviation);
     this->add_up(0, count);
   }
 
   T velocity(ParticleIndex particle) const override { return T(velocity_(particle)) * velocity_unit_; }
-  T position(ParticleIndex particle) const override {
-    return left_ + T((2 * particle + 1) * (displacement_unit / 2) + displacement_(particle)) * unit_;
-  }
-  T gap(ParticleIndex particle) const override {
-    return T(displacement_unit + displacement_(particle + 1) - displacement_(particle)) * unit_;
-  }
+  T position(ParticleIndex particle) const override { return left_ + T(this->place_from_end(particle)) * unit_; }
   // Between the particle at an end and that end of the gas.
   T gap_to(End end) const {
     const std::int64_t half = displacement_unit / 2;
-    return T(end == End::left ? half + displacement_(0) : half - displacement_(count_ - 1)) * unit_;
+    return T(end == End::left ? half + displacement_(0) : half - displacement_(this->count_ - 1)) * unit_;
   }
   T closing_speed(ParticleIndex particle) const override {
     return T(velocity_(particle) - velocity_(particle + 1)) * velocity_unit_;
@@ -56,8 +42,7 @@ template <Real T> class Gas final : public PatternedParticles<T> {
  private:
   T left_;
   VelocityDraw velocity_;
-  Displacement displacement_;
-  T unit_, velocity_unit_;
+  T velocity_unit_;
 };
 
 }  // namespace cradle

@@ -103,37 +103,4 @@ template <Real T> class MassPattern {
   T unit_{0}, least_{0}, greatest_{0};                     // of random masses
 };
 
-// Particles with masses of a pattern and velocities of their own.
-template <Real T> class PatternedParticles : public Particles<T> {
- public:
-  ParticleIndex count() const override { return count_; }
-  T mass(ParticleIndex particle) const override { return masses_.of(particle); }
-  bool identical_masses() const override { return masses_.identical(); }
-  T kinetic_energy() const override { return energy_; }
-  T momentum() const override { return momentum_; }
-  T total_mass() const override { return masses_.total(0, count_); }
-  T mass_between(ParticleIndex from, ParticleIndex to) const override { return masses_.total(from, to); }
-  T least_mass() const override { return masses_.least(); }
-  T greatest_mass() const override { return masses_.greatest(); }
-
- protected:
-  PatternedParticles(ParticleIndex count, MassPattern<T> masses) : count_(count), masses_(std::move(masses)) {}
-
-  // Sums energy and momentum over particles [from, to); the others are at rest.
-  void add_up(ParticleIndex from, ParticleIndex to) {
-    CompensatedSum<T> twice, momentum;
-    for (ParticleIndex particle = from; particle < to; ++particle) {
-      const T v = this->velocity(particle), m = mass(particle);
-      twice.add(m * v * v);
-      momentum.add(m * v);
-    }
-    energy_ = twice.value() / T(2);
-    momentum_ = momentum.value();
-  }
-
-  ParticleIndex count_;
-  MassPattern<T> masses_;
-  T energy_{0}, momentum_{0};
-};
-
 }  // namespace cradle

@@ -9,8 +9,6 @@
 // e_0, ..., e_N the sums e_0 + ... + e_k, over the sum of all, are distributed like N sorted uniform numbers.
 // All places are held, 8 bytes a particle.
 
-#include <bit>
-#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <stdexcept>
@@ -49,18 +47,10 @@ inline Displacement looked_up(Displacements all) {
   return [all = std::move(all)](ParticleIndex particle) { return (*all)[static_cast<std::size_t>(particle)]; };
 }
 
-// floor(a b/c), 0 <= a < c < 2^63, 0 <= b < 2^62: long division, bit by bit.
+// floor(a b/c), 0 <= a < c < 2^63, 0 <= b < 2^62.
 inline std::int64_t share_of(std::int64_t a, std::int64_t b, std::int64_t c) {
-  std::uint64_t quotient = 0, rest = 0;
-  const auto factor = static_cast<std::uint64_t>(a), divisor = static_cast<std::uint64_t>(c);
-  for (auto bit = static_cast<int>(std::bit_width(static_cast<std::uint64_t>(b))); bit-- > 0;) {
-    rest *= 2, quotient *= 2;
-    if (rest >= divisor) rest -= divisor, ++quotient;
-    if ((b >> bit & 1) == 0) continue;
-    rest += factor;
-    if (rest >= divisor) rest -= divisor, ++quotient;
-  }
-  return static_cast<std::int64_t>(quotient);
+  __extension__ using Wide = __int128;
+  return static_cast<std::int64_t>(Wide{a} * b / c);
 }
 
 }  // namespace detail

@@ -58,8 +58,24 @@ inline VelocityDraw uniform_velocity(std::uint64_t seed, std::uint64_t replica) 
       [=](ParticleIndex particle) { return uniform_integer(detail::velocity_bits(seed, replica, particle, 0), bound); };
 }
 
-template <Real T> class Ring final : public PatternedParticles<T> {
-  using PatternedParticles<T>::count_, PatternedParticles<T>::masses_;
+namespace detail {
+
+// Throws std::invalid_argument for what cannot be a gas on a length; `name`: of which kind it is.
+template <Real T> void require_gas(const std::string& name, ParticleIndex count, const T& length, const T& deviation) {
+  if (count < 1 || count >= std::int64_t{1} << 31)
+    throw std::invalid_argument("a " + name + " of " + std::to_string(count) +
+                                " particles: give it from 1 to 2147483647");
+  require_finite(length, "length of the " + name);
+  require_finite(deviation, "standard deviation of the velocities");
+  if (!(length > T(0) && deviation > T(0)))
+    throw std::invalid_argument("length or variance of the " + name + " is not positive (length " + in_message(length) +
+                                ", standard deviation " + in_message(deviation) + "): give positive numbers");
+}
+
+}  // namespace detail
+
+template <Real T> class Ring final : public OnLattice<T> {
+  using OnLattice<T>::count_, OnLattice<T>::masses_;
 
  public:
   // `deviation`: standard deviation of the velocities. Throws std::invalid_argument for no particles, 2^31 or more of
@@ -67,16 +83,9 @@ template <Real T> class Ring final : public PatternedParticles<T> {
   // Draws every velocity once.
   Ring(ParticleIndex count, T length, T deviation, VelocityDraw velocity, Displacement displacement,
        MassPattern<T> masses = {})
-      : PatternedParticles<T>(count, std::move(masses)), length_(std::move(length)), velocity_(std::move(velocity)),
-        displacement_(std::move(displacement)), unit_(length_ / (T(count) * T(displacement_unit))),
-        velocity_unit_(deviation / T(displacement_unit)) {
-    if (count < 1 || count >= std::int64_t{1} << 31)
-      throw std::invalid_argument("a ring of " + std::to_string(count) + " particles: give it from 1 to 2147483647");
-    require_finite(length_, "length of the ring");
-    require_finite(deviation, "standard deviation of the velocities");
-    if (!(length_ > T(0) && deviation > T(0)))
-      throw std::invalid_argument("length or variance of the ring is not positive (length " + in_message(length_) +
-                                  ", standard deviation " + in_message(deviation) + "): give positive numbers");
+      : OnLattice<T>(count, T(length / (T(count) * T(displacement_unit))), std::move(displacement), std::move(masses)),
+        length_(std::move(length)), velocity_(std::move(velocity)), velocity_unit_(deviation / T(displacement_unit)) {
+    detail::require_gas("ring", count, length_, deviation);
     if (count % masses_.period() != 0)
       throw std::invalid_argument("a pattern of " + std::to_string(masses_.period()) +
                                   " masses does not divide a ring of " + std::to_string(count) +
@@ -93,12 +102,8 @@ template <Real T> class Ring final : public PatternedParticles<T> {
   T velocity(ParticleIndex particle) const override {
     return (masses_.identical() ? T(pace(particle)) : T(T(pace(particle)) - drift_)) * velocity_unit_;
   }
-  T position(ParticleIndex particle) const override {
-    return T((2 * particle + 1) * (displacement_unit / 2) + displacement_(particle)) * unit_;
-  }
-  T gap(ParticleIndex particle) const override {
-    return T(displacement_unit + displacement_(next(particle)) - displacement_(particle)) * unit_;
-  }
+  T position(ParticleIndex particle) const override { return T(this->place_from_end(particle)) * this->unit_; }
+  T gap(ParticleIndex particle) const override { return this->distance(particle, next(particle)); }
   T closing_speed(ParticleIndex particle) const override {
     return T(pace(particle) - pace(next(particle))) * velocity_unit_;
   }
@@ -129,8 +134,7 @@ template <Real T> class Ring final : public PatternedParticles<T> {
 
   T length_;
   VelocityDraw velocity_;
-  Displacement displacement_;
-  T unit_, velocity_unit_;
+  T velocity_unit_;
   std::int64_t shift_ = 0, shifted_more_ = 0;
   T drift_{0};  // of the centre of mass, in units of velocities
 };

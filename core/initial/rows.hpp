@@ -56,6 +56,52 @@ inline Displacement uniform_displacement(double perturbation, std::uint64_t seed
   };
 }
 
+// Particles about the places of a lattice, with masses of a pattern and velocities of their own.
+template <Real T> class OnLattice : public Particles<T> {
+ public:
+  ParticleIndex count() const override { return count_; }
+  T mass(ParticleIndex particle) const override { return masses_.of(particle); }
+  bool identical_masses() const override { return masses_.identical(); }
+  T gap(ParticleIndex particle) const override { return distance(particle, particle + 1); }
+  T kinetic_energy() const override { return energy_; }
+  T momentum() const override { return momentum_; }
+  T total_mass() const override { return masses_.total(0, count_); }
+  T mass_between(ParticleIndex from, ParticleIndex to) const override { return masses_.total(from, to); }
+  T least_mass() const override { return masses_.least(); }
+  T greatest_mass() const override { return masses_.greatest(); }
+
+ protected:
+  // `unit`: 2^-28 of the spacing.
+  OnLattice(ParticleIndex count, T unit, Displacement displacement, MassPattern<T> masses)
+      : count_(count), unit_(std::move(unit)), displacement_(std::move(displacement)), masses_(std::move(masses)) {}
+
+  // From a particle to the next one.
+  T distance(ParticleIndex particle, ParticleIndex next) const {
+    return T(displacement_unit + displacement_(next) - displacement_(particle)) * unit_;
+  }
+  // In units of 2^-28 of the spacing, from the end of a lattice that begins half a spacing before its first particle.
+  std::int64_t place_from_end(ParticleIndex particle) const {
+    return (2 * particle + 1) * (displacement_unit / 2) + displacement_(particle);
+  }
+  // Sums energy and momentum over particles [from, to); the others are at rest.
+  void add_up(ParticleIndex from, ParticleIndex to) {
+    CompensatedSum<T> twice, momentum;
+    for (ParticleIndex particle = from; particle < to; ++particle) {
+      const T v = this->velocity(particle), m = mass(particle);
+      twice.add(m * v * v);
+      momentum.add(m * v);
+    }
+    energy_ = twice.value() / T(2);
+    momentum_ = momentum.value();
+  }
+
+  ParticleIndex count_;
+  T unit_;
+  Displacement displacement_;
+  MassPattern<T> masses_;
+  T energy_{0}, momentum_{0};
+};
+
 template <Real T> class Rows final : public Particles<T> {
  public:
   // Throws std::invalid_argument for rows that are empty or do not approach each other, spacings or masses that are not

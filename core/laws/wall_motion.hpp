@@ -1,6 +1,6 @@
 #pragma once
-// How a wall is shaken about its place, which moves uniformly (wall.hpp): towards the particles by A f(y), where y is
-// the phase in turns, y = (omega t + phi)/2 pi, t the time since the start, and, for y from -1/2 to 1/2,
+// A wall is shaken about its place, which moves uniformly (wall.hpp): it is displaced towards the particles by A f(y),
+// where y is the phase in turns, y = (omega t + phi)/2 pi, t the time since the start, and, for y from -1/2 to 1/2,
 //
 //   sawtooth   f = 2 y: always towards the particles at the speed A omega/pi; at y = 1/2 it jumps back by 2 A
 //   parabola   f = 16 y (1/2 - |y|): arcs of the acceleration -+ 8 A omega^2/pi^2, with the speed 4 A omega/pi between

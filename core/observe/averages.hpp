@@ -10,28 +10,26 @@
 // The first five are linear in what is counted, so averages over samples and replicas have no bias. The others have one
 // of the order of 1/(independent particles in the bin).
 //
-// Errors of one run: the samples are divided into batches of equal length, and the error of a number f is that of the
-// jackknife, (B - 1)/B sum_b (f_b - mean)^2, f_b being f without batch b. For sums it is the error from batch means
-// (Flyvbjerg and Petersen, J. Chem. Phys. 91, 461, 1989). It holds if batches are longer than what is correlated:
-// `error_growth` is the ratio of errors from a quarter as many batches to those from all, 1 if they are.
+// Errors of one run are those of the jackknife over batches of samples of equal length, and `error_growth` is that of
+// the energy density (batch_means.hpp).
 // Units: those of the scene; float64.
 
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <functional>
-#include <limits>
 #include <stdexcept>
 #include <vector>
 
 #include "cradle/core/base/state.hpp"
+#include "cradle/core/observe/batch_means.hpp"
 #include "cradle/core/observe/profile.hpp"
 
 namespace cradle {
 
 class TimeAverages {
  public:
-  static constexpr std::size_t batches = 32, quantities = 9;
+  static constexpr std::size_t batches = mean_batches, quantities = 9;
   using Numbers = std::array<double, quantities>;  // in the order above
   struct InBin {
     Numbers value, error;
@@ -86,12 +84,10 @@ class TimeAverages {
   }
   double error_growth() const {
     constexpr std::size_t energy_density = 3;
-    double few = 0, many = 0;
-    for (std::size_t bin = 0; bin < bins_; ++bin) {
-      const double a = error(bin, 4)[energy_density], b = error(bin, 1)[energy_density];
-      if (std::isfinite(a) && std::isfinite(b)) few += a * a, many += b * b;
-    }
-    return std::sqrt(few / many);
+    std::vector<BatchMean> means;
+    for (std::size_t bin = 0; bin < bins_; ++bin)
+      means.push_back({total(bin)[energy_density], error(bin, 1)[energy_density], error(bin, 4)[energy_density]});
+    return cradle::error_growth(means);
   }
 
   static auto state(auto& self) { return std::tie(self.taken_, self.batches_, self.found_, self.frame_); }
@@ -141,20 +137,16 @@ class TimeAverages {
 
   // From batches joined by so many.
   Numbers error(std::size_t bin, std::size_t joined) const {
-    std::vector<Numbers> values;
+    std::array<std::vector<double>, quantities> values;
     for (std::size_t b = 0; b < batches; b += joined) {
       double samples = 0;
       for (std::size_t k = b; k < b + joined; ++k) samples += batches_[k].samples;
-      if (samples > 0) values.push_back(without(bin, b, b + joined));
+      if (!(samples > 0)) continue;
+      const Numbers numbers = without(bin, b, b + joined);
+      for (std::size_t q = 0; q < quantities; ++q) values[q].push_back(numbers[q]);
     }
-    const auto count = static_cast<double>(values.size());
     Numbers error;
-    for (std::size_t q = 0; q < quantities; ++q) {
-      double mean = 0, squares = 0;
-      for (const Numbers& value : values) mean += value[q] / count;
-      for (const Numbers& value : values) squares += (value[q] - mean) * (value[q] - mean);
-      error[q] = count > 1 ? std::sqrt(squares * (count - 1) / count) : std::numeric_limits<double>::quiet_NaN();
-    }
+    for (std::size_t q = 0; q < quantities; ++q) error[q] = detail::jackknife_error(values[q]);
     return error;
   }
 

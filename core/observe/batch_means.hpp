@@ -25,6 +25,16 @@ struct BatchMean {
 
 namespace detail {
 
+// Of a number f, from its values without each batch; NaN for fewer than two.
+inline double jackknife_error(const std::vector<double>& without) {
+  const auto count = static_cast<double>(without.size());
+  if (count < 2) return std::numeric_limits<double>::quiet_NaN();
+  double mean = 0, squares = 0;
+  for (const double value : without) mean += value / count;
+  for (const double value : without) squares += (value - mean) * (value - mean);
+  return std::sqrt(squares * (count - 1) / count);
+}
+
 inline double jackknife_error(const OfBatches& sums, const OfBatches& weights, std::size_t joined) {
   double sum = 0, weight = 0;
   for (std::size_t b = 0; b < mean_batches; ++b) sum += sums[b], weight += weights[b];
@@ -34,12 +44,7 @@ inline double jackknife_error(const OfBatches& sums, const OfBatches& weights, s
     for (std::size_t k = b; k < b + joined; ++k) s += sums[k], w += weights[k];
     if (w > 0) without.push_back((sum - s) / (weight - w));
   }
-  const auto count = static_cast<double>(without.size());
-  if (count < 2) return std::numeric_limits<double>::quiet_NaN();
-  double mean = 0, squares = 0;
-  for (const double value : without) mean += value / count;
-  for (const double value : without) squares += (value - mean) * (value - mean);
-  return std::sqrt(squares * (count - 1) / count);
+  return jackknife_error(without);
 }
 
 }  // namespace detail

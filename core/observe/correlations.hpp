@@ -16,7 +16,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <stdexcept>
-#include <utility>
 #include <vector>
 
 #include "cradle/core/chains/anchor.hpp"

@@ -13,10 +13,9 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
+#include <deque>
 #include <optional>
 #include <vector>
 
@@ -135,19 +134,13 @@ template <Real T> class CollisionHistograms {
     }
   };
 
-  // Those that have collided are neighbours, in the order of the line: room grows on either side.
+  // Those that have collided are neighbours, in the order of the line.
   Past& of(ParticleIndex particle) {
-    const auto size = static_cast<ParticleIndex>(past_.size());
-    if (size == 0) first_ = particle;
-    if (particle < first_) {
-      const ParticleIndex more = std::min(first_, std::max(first_ - particle, size));
-      past_.insert(past_.begin(), static_cast<std::size_t>(more), Past());
-      first_ -= more;
-    } else if (particle >= first_ + size) {
-      const ParticleIndex least = particle - first_ + 1;
-      past_.resize(static_cast<std::size_t>(std::min(std::max(least, 2 * size), particles_ - first_)));
-    }
-    return past_[static_cast<std::size_t>(particle - first_)];
+    if (past_.empty()) first_ = particle;
+    for (; particle < first_; --first_) past_.emplace_front();
+    const auto place = static_cast<std::size_t>(particle - first_);
+    if (place >= past_.size()) past_.resize(place + 1);
+    return past_[place];
   }
 
   T from_, until_;
@@ -156,7 +149,7 @@ template <Real T> class CollisionHistograms {
   std::optional<double> pending_;  // closing speed of the last collision, whose kind is not known yet
   std::uint64_t below_cutoff_ = 0;
   ParticleIndex first_ = 0;  // the particle of past_[0]
-  std::vector<Past> past_;
+  std::deque<Past> past_;
 
  public:
   OctaveHistogram free_flights, pair_flights, closing_speeds, dissipative_speeds;

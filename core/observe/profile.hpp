@@ -10,6 +10,7 @@
 #include <exception>
 #include <functional>
 #include <limits>
+#include <ranges>
 #include <stdexcept>
 #include <vector>
 
@@ -95,14 +96,8 @@ void for_each_particle(const Configuration<T>& c, const Particles<T>& particles,
   };
   // They fly in order: finds the first of [low, high) that is not to the left of a position.
   const auto first_from = [&](ParticleIndex low, ParticleIndex high, double place) {
-    while (low < high) {
-      const ParticleIndex middle = low + (high - low) / 2;
-      if (fly(middle) < place)
-        low = middle + 1;
-      else
-        high = middle;
-    }
-    return low;
+    return *std::ranges::partition_point(std::views::iota(low, std::max(low, high)),
+                                         [&](ParticleIndex particle) { return fly(particle) < place; });
   };
   for (ParticleIndex particle = first_from(0, c.from, range.to) - 1; particle >= 0; --particle) {
     const double x = fly(particle);

@@ -1,7 +1,7 @@
 #pragma once
-// Decides which of the paper's two scenarios a wet shock follows (section VI, Fig. 9). Its two heaviest clusters either
-// pass through each other when they meet, and continue to oscillate, or stick, and then another cluster becomes the
-// second one. The watch receives every collision, and samples the clusters from time to time.
+// `ScenarioWatch` decides which of the paper's two scenarios a wet shock follows (section VI, Fig. 9). Its two heaviest
+// clusters either pass through each other when they meet, and continue to oscillate, or stick, and then another cluster
+// becomes the second one. The watch receives every collision, and samples the clusters from time to time.
 //
 //   pair         the two heaviest clusters, from the first sample in which they hold more than half of the mass that
 //                has collided, and at least ten particles each

@@ -1,6 +1,6 @@
 #pragma once
-// How particles are placed with respect to each other at one time, from their positions x on a length L: a ring, or
-// between two walls. Lengths in units of the scene; float64.
+// Two classes measure how particles are placed with respect to each other at one time, from their positions x on a
+// length L: a ring, or between two walls. Lengths are in units of the scene; numbers are float64.
 //
 //   structure factor    S(k) = |sum m exp(i k x)|^2/sum m^2, k = 2 pi n/L; particles that have merged count as one
 //   pair distribution   g(r) = pairs at a distance in a bin about r, divided by their mean number if the same particles
@@ -17,7 +17,6 @@
 #include <limits>
 #include <numbers>
 #include <stdexcept>
-#include <utility>
 #include <vector>
 
 #include "cradle/core/laws/turns.hpp"

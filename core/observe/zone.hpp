@@ -48,14 +48,13 @@ class ZoneAverage {
             const std::function<bool()>& stopped = {}) {
     Part& part = found_ = part_.at(taken_ * parts / samples_);
     const auto count = [&](double x, double v, double m) {
-      const std::size_t bin = detail::bin_at((x + reach_) / (2 * reach_) * static_cast<double>(bins_), bins_);
-      part.mass[bin] += m;
+      Bin& bin = part[detail::bin_at((x + reach_) / (2 * reach_) * static_cast<double>(bins_), bins_)];
+      bin.mass += m;
       if (m != row_mass_ || v == 0) return;
-      (v > 0 ? part.right : part.left)[bin] += 1;
-      (v > 0 ? part.right_speed : part.left_speed)[bin] += v;
+      (v > 0 ? bin.right : bin.left) += 1;
+      (v > 0 ? bin.right_speed : bin.left_speed) += v;
     };
     for_each_particle(c, particles, elapsed, {-reach_, reach_}, count, stopped);
-    ++part.samples;
   }
   void add_found() {
     part_[taken_ * parts / samples_] = std::move(found_);
@@ -64,11 +63,11 @@ class ZoneAverage {
 
   std::size_t samples() const { return taken_; }
   double centre(std::size_t bin) const { return place(static_cast<double>(bin) + 0.5); }
-  std::vector<double> mass_density() const { return per_length(&Part::mass); }
-  std::vector<double> density_right() const { return per_length(&Part::right); }
-  std::vector<double> density_left() const { return per_length(&Part::left); }
-  std::vector<double> velocity_right() const { return quotient(&Part::right_speed, &Part::right); }
-  std::vector<double> velocity_left() const { return quotient(&Part::left_speed, &Part::left); }
+  std::vector<double> mass_density() const { return per_length(&Bin::mass); }
+  std::vector<double> density_right() const { return per_length(&Bin::right); }
+  std::vector<double> density_left() const { return per_length(&Bin::left); }
+  std::vector<double> velocity_right() const { return quotient(&Bin::right_speed, &Bin::right); }
+  std::vector<double> velocity_left() const { return quotient(&Bin::left_speed, &Bin::left); }
 
   // For rows at `speed` whose particles merge below the closing speed `critical`.
   ZoneWidth width(double speed, double critical) const {
@@ -85,38 +84,33 @@ class ZoneAverage {
   static auto state(auto& self) { return std::tie(self.taken_, self.part_); }
   void loaded() const {
     require_state(part_.size() == parts && taken_ <= samples_, "samples");
-    for (const Part& part : part_)
-      for (const Bins* bins : {&part.mass, &part.right, &part.right_speed, &part.left, &part.left_speed})
-        require_state(bins->size() == bins_, "bins");
+    for (const Part& part : part_) require_state(part.size() == bins_, "bins");
   }
 
  private:
-  using Bins = std::vector<double>;
-  struct Part {  // sums over the samples of one part of the time
-    explicit Part(std::size_t bins = 0) : mass(bins), right(bins), right_speed(bins), left(bins), left_speed(bins) {}
-    Bins mass, right, right_speed, left, left_speed;
-    double samples = 0;
-
+  struct Bin {
+    double mass = 0, right = 0, right_speed = 0, left = 0, left_speed = 0;
     static auto state(auto& self) {
-      return std::tie(self.mass, self.right, self.right_speed, self.left, self.left_speed, self.samples);
+      return std::tie(self.mass, self.right, self.right_speed, self.left, self.left_speed);
     }
   };
+  using Part = std::vector<Bin>;  // sums over the samples of one part of the time
 
   double place(double bin) const { return reach_ * (2 * bin / static_cast<double>(bins_) - 1); }
 
-  double total(Bins Part::*bins, std::size_t bin) const {
+  double total(double Bin::*number, std::size_t bin) const {
     double sum = 0;
-    for (const Part& part : part_) sum += (part.*bins)[bin];
+    for (const Part& part : part_) sum += part[bin].*number;
     return sum;
   }
-  Bins per_length(Bins Part::*bins) const {
+  std::vector<double> per_length(double Bin::*number) const {
     const double scale = static_cast<double>(bins_) / (2 * reach_ * static_cast<double>(taken_));
-    Bins density(bins_);
-    for (std::size_t bin = 0; bin < bins_; ++bin) density[bin] = total(bins, bin) * scale;
+    std::vector<double> density(bins_);
+    for (std::size_t bin = 0; bin < bins_; ++bin) density[bin] = total(number, bin) * scale;
     return density;
   }
-  Bins quotient(Bins Part::*sum, Bins Part::*weight) const {
-    Bins mean(bins_);
+  std::vector<double> quotient(double Bin::*sum, double Bin::*weight) const {
+    std::vector<double> mean(bins_);
     for (std::size_t bin = 0; bin < bins_; ++bin) mean[bin] = detail::mean(total(sum, bin), total(weight, bin));
     return mean;
   }
@@ -133,9 +127,8 @@ class ZoneAverage {
     std::size_t found = 0;
     double before = speed, x_before = -reach_;
     for (std::size_t bin = 0; bin < bins_ && found < 2; ++bin) {
-      const std::size_t mirrored = bins_ - 1 - bin;
-      const double speeds = part.right_speed[bin] - part.left_speed[mirrored];
-      const double movers = part.right[bin] + part.left[mirrored];
+      const Bin &here = part[bin], &mirrored = part[bins_ - 1 - bin];
+      const double speeds = here.right_speed - mirrored.left_speed, movers = here.right + mirrored.left;
       if (!(movers > 0)) continue;
       const double u = speeds / movers, x = centre(bin);
       while (found < 2 && u < speed * (found == 0 ? 0.75 : 0.25)) {

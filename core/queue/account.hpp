@@ -1,5 +1,5 @@
 #pragma once
-// Counts of what a run could not resolve; nothing is clamped or skipped.
+// The account counts what a run could not resolve; nothing is clamped or skipped.
 
 #include <cstdint>
 #include <tuple>

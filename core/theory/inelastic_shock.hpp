@@ -245,8 +245,8 @@ template <class T> T mean_velocity_slope_early(const InelasticShock<T>& shock) {
   return T(-shock.speed * kappa * (T(1) - detail::log_deficit(kappa)) / shock.spacing);
 }
 
-/// N m u0^2/2.
-template <class T> T initial_energy(const InelasticShock<T>& shock) {
+/// N m u0^2/2, of an inelastic or a wet shock.
+template <template <class> class Shock, class T> T initial_energy(const Shock<T>& shock) {
   return T(detail::from_count<T>(shock.particles) * shock.mass * shock.speed * shock.speed / T(2));
 }
 

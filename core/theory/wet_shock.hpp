@@ -50,11 +50,6 @@ template <class T> struct WetShock {
   T origin() const { return T(-spacing / T(2)); }
 };
 
-/// N m u0^2/2.
-template <class T> T initial_energy(const WetShock<T>& shock) {
-  return T(detail::from_count<T>(shock.particles) * shock.mass * shock.speed * shock.speed / T(2));
-}
-
 /// The speed that each of two single particles loses at the closing speed w > w_c, (w - w')/2 = 2e/(w + w'), w' =
 /// sqrt(w^2 - w_c^2).
 template <class T> T speed_lost(const T& specific_loss, const T& w, const T& critical) {

@@ -88,17 +88,9 @@ template <class T> class WetZone {
     return inner_right_mover_force(x);
   }
   /// F_+ + F_-, equation (14): towards the centre outside the zone, away from it inside.
-  T force(const T& x) const {
-    if (!(x < half_width_)) return T(-row_force());
-    if (!(x > -half_width_)) return row_force();
-    return inner_force(x);
-  }
+  T force(const T& x) const { return force(x, row_force()); }
   /// The same with the outer force as printed, n0 E_loss (2 E_loss/(m u0^2) << 1), which is not continuous with F_+.
-  T force_printed(const T& x) const {
-    if (!(x < half_width_)) return T(-row_force_printed());
-    if (!(x > -half_width_)) return row_force_printed();
-    return inner_force(x);
-  }
+  T force_printed(const T& x) const { return force(x, row_force_printed()); }
 
   /// Force of one row outside the zone: n0 m u0^2 (1 - sqrt(1 - 2 E_loss/(m u0^2))).
   T row_force() const { return T(shock_.speed * piston_momentum(shock_.speed) / shock_.spacing); }
@@ -128,6 +120,10 @@ template <class T> class WetZone {
   }
 
  private:
+  T force(const T& x, const T& outside) const {
+    if (!(x < half_width_)) return T(-outside);
+    return x > -half_width_ ? inner_force(x) : outside;
+  }
   T inner_right_mover_force(const T& x) const {
     const T u = right_mover_velocity(x);
     if (!(u > T(0))) return T(0);

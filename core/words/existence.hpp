@@ -1,5 +1,5 @@
 #pragma once
-// The restitutions for which a word has a self-similar state: found approximately, then proved.
+// The restitutions for which a word has a self-similar state are found approximately, then proved.
 //
 //   scan      at many restitutions: eigenvalues, signs of the margins. An interval narrower than the grid is missed.
 //   end       where a margin changes its sign, by the secant method in a long type
@@ -11,9 +11,7 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <optional>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -109,14 +107,14 @@ template <Real T> System<T> in_order_of_time(System<T> system, const T& r, const
   return begin == length ? system : System<T>(rotated(system.word, begin), system.shares);
 }
 
+template <Real T> T usual_error() { return std::numeric_limits<T>::epsilon() * T(1024); }
+
 // The state near a known one at another restitution, by Newton's method, to an error of about `small`.
-template <Real T> Pairs<T> followed(const System<T>& system, const T& r, Pairs<T> pairs, const T& small) {
+template <Real T>
+Pairs<T> followed(const System<T>& system, const T& r, Pairs<T> pairs, const T& small = usual_error<T>()) {
   improve(system.velocities(r), pairs.speeds, small);
   improve(system.gaps(r, pairs.speeds.vector), pairs.gaps, T(small * pairs.gaps.value));
   return pairs;
-}
-template <Real T> Pairs<T> followed(const System<T>& system, const T& r, Pairs<T> pairs) {
-  return followed(system, r, std::move(pairs), T(std::numeric_limits<T>::epsilon() * T(1024)));
 }
 
 // Both eigenpairs at all restitutions of a ball, near an approximation at its middle.
@@ -172,7 +170,7 @@ template <Enclosing B, Real T> class Prover {
 
   // Proves existence from a restitution on towards another one, in steps that grow after one that succeeds and shrink
   // after one that fails. Returns how far it came.
-  T march(T from, const T& to, Pairs<T> near, std::uint64_t& balls) const {
+  T march(T from, const T& to, Pairs<T> near) const {
     const bool up = from < to;
     T step = (to - from) / T(64);
     for (int tries = 0; tries < most_tries && (up ? from < to : to < from); ++tries) {
@@ -180,7 +178,6 @@ template <Enclosing B, Real T> class Prover {
       if (up ? !(next < to) : !(to < next)) next = to;
       if (holds(between<B>(from, next), near, magnitude(T(next - from)))) {
         from = next;
-        ++balls;
         step = step * T(9) / T(8);
       } else {
         step = (next - from) * T(2) / T(3);
@@ -197,41 +194,45 @@ template <Enclosing B, Real T> class Prover {
   }
 
  private:
-  // The signs of a margin on both sides differ, and the eigenpairs there are those of the ball in between. A closing
-  // speed depends on one eigenpair only; where it is 0, the other one has no enclosure, since times are quotients by
-  // it.
-  bool is_equality(const End<T>& end, const T& low, const T& high) const {
-    if (end.margin < exact.word.size()) return closing_vanishes(end, low, high);
-    const auto around = enclosed(exact, system, between<B>(low, high), end.pairs);
-    if (!around) return false;
+  // Whether a number is certainly negative at one of two restitutions and positive at the other; `value_at` returns
+  // nothing where it is not known.
+  template <class F> static bool changes_sign(const T& low, const T& high, F value_at) {
     bool negative = false, positive = false;
     for (const T& side : {low, high}) {
-      const B r(side, 0);
-      const auto at = enclosed(exact, system, r, followed(system, side, end.pairs));
-      if (!at || !within(*at, *around)) return false;
-      const B value = margins(exact, r, *at)[end.margin].value;
-      (is_negative(value) ? negative : positive) = is_negative(value) || is_positive(value);
+      const std::optional<B> value = value_at(B(side, 0));
+      if (!value) return false;
+      negative = negative || is_negative(*value);
+      positive = positive || is_positive(*value);
     }
     return negative && positive;
   }
+  // The same, of a number of eigenpairs that are those of the ball in between.
+  template <class At, class F> static bool vanishes(const T& low, const T& high, At eigenpairs_at, F value_of) {
+    const auto around = eigenpairs_at(between<B>(low, high));
+    return around && changes_sign(low, high, [&](const B& r) {
+             const auto at = eigenpairs_at(r);
+             return at && within(*at, *around) ? std::optional<B>(value_of(r, *at)) : std::nullopt;
+           });
+  }
 
-  bool closing_vanishes(const End<T>& end, const T& low, const T& high) const {
-    const auto speeds_at = [&](const B& r) {
-      Eigenpair<T> near = end.pairs.speeds;
-      improve(system.velocities(r.middle()), near, T(std::numeric_limits<T>::epsilon() * T(1024)));
-      return enclosed(exact.velocities(r), system.velocities(r.middle()), near);
-    };
-    const auto around = speeds_at(between<B>(low, high));
-    if (!around) return false;
-    bool negative = false, positive = false;
-    for (const T& side : {low, high}) {
-      const B r(side, 0);
-      const auto at = speeds_at(r);
-      if (!at || !within(*at, *around)) return false;
-      const B value = speeds_of(exact.word, r, exact.shares, at->vector)[end.margin][exact.word[end.margin]];
-      (is_negative(value) ? negative : positive) = is_negative(value) || is_positive(value);
+  // A closing speed depends on one eigenpair only; where it is 0, the other one has no enclosure, since times are
+  // quotients by it.
+  bool is_equality(const End<T>& end, const T& low, const T& high) const {
+    if (end.margin < exact.word.size()) {
+      const auto speeds_at = [&](const B& r) {
+        Eigenpair<T> near = end.pairs.speeds;
+        improve(system.velocities(r.middle()), near, usual_error<T>());
+        return enclosed(exact.velocities(r), system.velocities(r.middle()), near);
+      };
+      return vanishes(low, high, speeds_at, [&](const B& r, const Eigenpair<B>& speeds) {
+        return speeds_of(exact.word, r, exact.shares, speeds.vector)[end.margin][exact.word[end.margin]];
+      });
     }
-    return negative && positive;
+    const auto pairs_at = [&](const B& r) {
+      return enclosed(exact, system, r, followed(system, r.middle(), end.pairs));
+    };
+    return vanishes(low, high, pairs_at,
+                    [&](const B& r, const Pairs<B>& pairs) { return margins(exact, r, pairs)[end.margin].value; });
   }
 
   // Let x(r) be the root of the derivative of the characteristic polynomial p near the double eigenvalue: unique in a
@@ -247,13 +248,10 @@ template <Enclosing B, Real T> class Prover {
     if (!(is_positive(bend) && is_negative(left) && is_positive(right)) &&
         !(is_negative(bend) && is_positive(left) && is_negative(right)))
       return false;
-    bool negative = false, positive = false;
-    for (const T& side : {low, high}) {
-      const Polynomial<B> p = at(B(side, 0));
-      const B value = value_at(p, B(end.lambda, 0)) + value_at(derivative(p), near) * (near - B(end.lambda, 0));
-      (is_negative(value) ? negative : positive) = is_negative(value) || is_positive(value);
-    }
-    return negative && positive;
+    return changes_sign(low, high, [&](const B& r) {
+      const Polynomial<B> p = at(r);
+      return value_at(p, B(end.lambda, 0)) + value_at(derivative(p), near) * (near - B(end.lambda, 0));
+    });
   }
 
   static bool within(const B& inner, const B& outer) { return (inner - B(outer.middle(), 0)).size() <= outer.radius(); }

@@ -1,7 +1,7 @@
 #pragma once
-// How far a sequence of collisions follows a word, repeated for ever. Collisions of gaps that do not touch commute
-// (word.hpp), so a place in the word is a set of letters made, closed under what must come before: for each two
-// touching gaps, how many of their letters. A sequence may begin at any place; all that fit so far are kept.
+// `Followed` finds how far a sequence of collisions follows a word, repeated for ever. Collisions of gaps that do not
+// touch commute (word.hpp), so a place in the word is a set of letters made, closed under what must come before: for
+// each two touching gaps, how many of their letters. A sequence may begin at any place; all that fit so far are kept.
 
 #include <cstdint>
 #include <map>

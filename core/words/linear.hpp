@@ -3,7 +3,6 @@
 // roots, solutions of linear equations, whether all roots lie within the unit circle.
 
 #include <cstddef>
-#include <limits>
 #include <utility>
 #include <vector>
 

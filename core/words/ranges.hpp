@@ -8,7 +8,6 @@
 // period, by the largest one.
 
 #include <cstddef>
-#include <cstdint>
 #include <utility>
 #include <vector>
 
@@ -22,7 +21,6 @@ template <Real T> struct Range {
   bool low_ends = false, high_ends = false;  // whether it is proved that the end is one
   T middle{0};
   Pairs<T> pairs{};  // in the middle
-  std::uint64_t balls = 0;
 };
 
 // How a perturbation grows in a period, and whether its being below 1 is proved or refuted.
@@ -93,7 +91,7 @@ void prove_end(const Prover<B, T>& prover, const System<Q>& quick, const Q& insi
       }
     }
   }
-  proved = prover.march(range.middle, goal, range.pairs, range.balls);
+  proved = prover.march(range.middle, goal, range.pairs);
   if (end.is == End<T>::Is::zero) ends = !(goal < proved);
 }
 

@@ -2,11 +2,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 
 #include "cradle/core/words/ranges.hpp"
 #include "cradle/precision/ball.hpp"
-#include "cradle/precision/ball_text.hpp"
 #include "cradle/precision/text.hpp"
 #include "cradle/tools/words/words.hpp"
 
@@ -113,15 +111,12 @@ template <class T> class Analyst {
     return all;
   }
 
-  WordEnd text_of(const words::System<T>& system, const words::End<T>& end, bool proved, const T& radius) const {
+  WordEnd text_of(const words::System<T>& system, const words::End<T>& end, bool proved) const {
     using Is = typename words::End<T>::Is;
     WordEnd text;
     text.value = to_double(end.at);
     text.proved = proved;
     text.at = end.is == Is::zero ? "0" : cut_off(to_text(end.at), particles_.digits);
-    const auto around = in_decimals(B::widened(B(end.at, 0), B(radius, 0).size()));
-    text.low = end.is == Is::zero ? "0" : around.low;
-    text.high = end.is == Is::zero ? fmt::format("1e-{}", particles_.digits + 2) : around.high;
     if (end.is == Is::zero) text.reason = "no restitution is smaller";
     if (end.is == Is::meeting) text.reason = "two eigenvalues of the velocity map meet, and are complex beyond";
     if (end.is == Is::unresolved) text.reason = "not resolved";
@@ -132,13 +127,12 @@ template <class T> class Analyst {
   WordRange text_of(const words::Prover<B, T>& prover, const words::Range<T>& range, const T& radius,
                     const std::optional<Decimal>& at) const {
     WordRange text;
-    text.low = text_of(prover.system, range.low, range.low_ends, radius);
-    text.high = text_of(prover.system, range.high, range.high_ends, radius);
+    text.low = text_of(prover.system, range.low, range.low_ends);
+    text.high = text_of(prover.system, range.high, range.high_ends);
     text.proved_from = to_text(range.proved_low), text.proved_to = to_text(range.proved_high);
     const bool to_low = !(range.low.at + radius * T(2) < range.proved_low);
     const bool to_high = !(range.proved_high < range.high.at - radius * T(2));
     text.proved = text.low.proved && text.high.proved && to_low && to_high;
-    text.balls = range.balls;
 
     T r = range.middle;
     words::Pairs<T> pairs = range.pairs;
@@ -182,21 +176,15 @@ template <class Found, class F> Found in_digits(unsigned digits, [[maybe_unused]
               "install libmpfr-dev (Debian's name) and build again, or give at most 250 digits");
 }
 
-double seconds_since(std::chrono::steady_clock::time_point started) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
-}
-
 }  // namespace
 
 WordReport report_word(const WordParticles& particles, const words::Word& word, const std::optional<Decimal>& at) {
   WordReport report;
   report.word = report.in_order = words::text_of(word);
   if (particles.left_wall && particles.right_wall) return report;
-  const auto started = std::chrono::steady_clock::now();
   report = in_digits<WordReport>(
       particles.digits, [&]<class T>(std::type_identity<T>) { return Analyst<T>(particles, word).report(at); });
   report.word = words::text_of(word);
-  report.seconds = seconds_since(started);
   return report;
 }
 
@@ -207,12 +195,10 @@ std::vector<WordReport> search_words(const WordParticles& particles, std::size_t
     std::vector<WordReport> all;
     words::for_each_word(particles.gaps(), longest, particles.symmetric(), [&](const words::Word& word) {
       ++tried;
-      const auto started = std::chrono::steady_clock::now();
       Analyst<T> analyst(particles, word);
       if (!analyst.any()) return;
       all.push_back(analyst.report({}));
       all.back().word = words::text_of(word);
-      all.back().seconds = seconds_since(started);
       found(all.back());
     });
     return all;

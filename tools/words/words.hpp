@@ -2,7 +2,6 @@
 // file, as a scene. The mathematics and the proofs are in core/words; here they get decimals, digits and names.
 #pragma once
 
-#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -24,7 +23,6 @@ WordParticles word_particles(const std::string& count, const std::string& masses
 struct WordEnd {
   std::string at;  // decimal, `digits` digits after the point
   double value = 0;
-  std::string low, high;  // the end is between these
   std::string reason;
   bool proved = false;  // that the state ends in between
 };
@@ -34,7 +32,6 @@ struct WordRange {
   WordEnd low, high;
   std::string proved_from, proved_to;  // existence is proved from here to there
   bool proved = false;                 // up to both ends
-  std::uint64_t balls = 0;
   // At one restitution: how a period changes speeds and gaps, how fast a perturbation grows in it.
   std::string at;
   double lambda = 0, gamma = 0, factor = 0;
@@ -49,7 +46,6 @@ struct WordReport {
   bool mirrored = false;       // its second half is the mirror image of the first
   std::vector<WordRange> ranges;
   std::string degenerate;  // where three particles meet, in words; empty: nowhere
-  double seconds = 0;
 };
 
 /// Everything about a word; `at` is the restitution of its state, the middle of the range if not given. Throws Error.

@@ -1,6 +1,6 @@
 #pragma once
-// What steps work on (steps.hpp): the gaps of a segment's copy, from 0 to gaps - 1. Beside them stand their times of
-// collision once more, one after the other, so that vectors of neighbours are loaded at once. Beyond both ends stand
+// Steps (steps.hpp) work on this line: the gaps of a segment's copy, from 0 to gaps - 1. Beside them stand their times
+// of collision once more, one after the other, so that vectors of neighbours are loaded at once. Beyond both ends stand
 // gaps that never close, more than a vector and the radius of a decision reach; a tile of gaps has a lower bound of
 // their times of collision.
 

@@ -1,7 +1,7 @@
 #pragma once
-// How the numbers of a segment's gaps stand in a line (line.hpp) while steps work on them. Doubles stay in the
-// segment's own cells, with a copy of the times of collision beside them. Numbers that are sums of two doubles
-// (pairs.inl) are copied to arrays, and back when all is done or a collision is made on the cells.
+// This file puts the numbers of a segment's gaps into a line (line.hpp), where they stand while steps work on them.
+// Doubles stay in the segment's own cells, with a copy of the times of collision beside them. Numbers that are sums of
+// two doubles (pairs.inl) are copied to arrays, and back when all is done or a collision is made on the cells.
 
 #include <bit>
 #include <cmath>

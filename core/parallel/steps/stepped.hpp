@@ -1,6 +1,6 @@
 #pragma once
-// How a segment of a chain in gaps uses steps (steps.hpp): steps work on the segment's copy, and leave collisions at
-// cuts, fronts and walls to it, and those beside the seam of a whole ring. If steps fail, the segment takes its copy
+// A segment of a chain in gaps uses steps (steps.hpp) as follows: they work on the segment's copy, and leave collisions
+// at cuts, fronts and walls to it, and those beside the seam of a whole ring. If steps fail, the segment takes its copy
 // anew and goes through its event loop.
 
 #include <array>

@@ -1,4 +1,4 @@
-// Built where Highway is missing: there are no steps.
+// This file is built where Highway is missing: there are no steps.
 
 #include "cradle/core/parallel/steps/steps.hpp"
 

@@ -82,7 +82,7 @@ TYPED_TEST(Executors, ReplicasThatThrowAreRecordedAndHarmNoOther) {
     });
     EXPECT_EQ(ensemble.statistics(), statistics_of(good));
     EXPECT_EQ(ensemble.tree().size(), 200U) << "those that failed are not run again";
-    EXPECT_EQ(ensemble.tree().nodes_held(), 3U) << "128 + 64 + 8: nodes grow over failed replicas";
+    EXPECT_EQ(ensemble.tree().nodes().size(), 3U) << "128 + 64 + 8: nodes grow over failed replicas";
     const auto failures = ensemble.failures();
     EXPECT_EQ(failures.size(), 200 - good.size());
     EXPECT_EQ(failures.at(10), "particles 10 coincide");
@@ -165,13 +165,13 @@ TYPED_TEST(Executors, MemoryGrowsWithThreadsNotWithReplicas) {
       ++begun;
       if (k == 5)
         while (begun < n) std::this_thread::yield();
-      std::size_t seen = most, held = k % 16 == 0 ? ensemble.tree().nodes_held() : 0;
+      std::size_t seen = most, held = k % 16 == 0 ? ensemble.tree().nodes().size() : 0;
       while (held > seen && !most.compare_exchange_weak(seen, held)) {
       }
       return std::vector<double>{1};
     });
     EXPECT_LE(most, (threads + 1) * 2 * static_cast<std::size_t>(std::bit_width(n))) << n;
-    EXPECT_EQ(ensemble.tree().nodes_held(), 1U);
+    EXPECT_EQ(ensemble.tree().nodes().size(), 1U);
   }
 }
 

@@ -205,7 +205,7 @@ TEST(Statistics, NoReplicaIsOutOfSightWhileOthersAreAdded) {
   writer.join();
   EXPECT_EQ(unseen, 0U) << "of " << looks;
   EXPECT_EQ(taken_twice, 0U) << "of " << looks;
-  EXPECT_EQ(tree.nodes_held(), 1U);
+  EXPECT_EQ(tree.nodes().size(), 1U);
 }
 
 TEST(Statistics, MissingReplicasAreFoundWhereverTheyAre) {

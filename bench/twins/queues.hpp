@@ -1,9 +1,10 @@
 #pragma once
-// The better conventional engines: a binary heap with one entry per gap. It knows the place of each gap's entry, so a
-// new prediction replaces the old one in place (increase or decrease key). There are no stale events, and the heap
-// never grows.
+// Conventional engines, which differ in the queue of predicted collisions. The better ones have a binary heap with one
+// entry per gap. It knows the place of each gap's entry, so a new prediction replaces the old one in place (increase or
+// decrease key). There are no stale events, and the heap never grows.
 
 #include <algorithm>
+#include <queue>
 #include <utility>
 
 #include "line.hpp"
@@ -13,6 +14,35 @@ namespace twins {
 struct Event {
   double time;
   std::uint32_t gap;
+};
+
+// That of textbooks: predictions are put into a std::priority_queue and stay there. A collision invalidates those for
+// the gaps beside it. Such stale events are recognised by the number of predictions that their gap had by then, and are
+// skipped when they come to the top.
+class PriorityQueue {
+ public:
+  explicit PriorityQueue(const std::vector<double>& due) : had_(due.size()) {
+    for (std::uint32_t i = 0; i < due.size(); ++i) update(i, due[i]);
+  }
+
+  Event first() {
+    while (!events_.empty() && events_.top().had != had_[events_.top().gap]) events_.pop();
+    return events_.empty() ? Event{never, 0} : Event(events_.top());
+  }
+
+  void update(std::uint32_t gap, double time) {
+    ++had_[gap];
+    if (time < never) events_.push({{time, gap}, had_[gap]});
+  }
+
+ private:
+  struct Prediction : Event {
+    std::uint32_t had;
+    bool operator>(const Prediction& other) const { return time > other.time; }
+  };
+
+  std::vector<std::uint32_t> had_;  // predictions for each gap until now
+  std::priority_queue<Prediction, std::vector<Prediction>, std::greater<>> events_;
 };
 
 // The layout is that of textbooks: gaps in heap order, the place of each gap, the key of each gap.
@@ -109,9 +139,9 @@ class TunedHeap {
   std::vector<std::uint32_t> place_;  // of each gap's entry in the heap
 };
 
-template <class Heap> class HeapEngine {
+template <class Queue> class QueueEngine {
  public:
-  HeapEngine(const cradle::Particles<double>& particles, Law law) : line_(particles, law), heap_(line_.all_due()) {}
+  QueueEngine(const cradle::Particles<double>& particles, Law law) : line_(particles, law), queue_(line_.all_due()) {}
 
   // Makes every collision at times <= until.
   void advance(double until);
@@ -120,12 +150,14 @@ template <class Heap> class HeapEngine {
 
  private:
   Line line_;
-  Heap heap_;
+  Queue queue_;
   std::uint64_t collisions_ = 0;
 };
-using IndexedHeapEngine = HeapEngine<IndexedHeap>;
-using TunedHeapEngine = HeapEngine<TunedHeap>;
-extern template class HeapEngine<IndexedHeap>;
-extern template class HeapEngine<TunedHeap>;
+using IndexedHeapEngine = QueueEngine<IndexedHeap>;
+using TunedHeapEngine = QueueEngine<TunedHeap>;
+using PriorityQueueEngine = QueueEngine<PriorityQueue>;
+extern template class QueueEngine<IndexedHeap>;
+extern template class QueueEngine<TunedHeap>;
+extern template class QueueEngine<PriorityQueue>;
 
 }  // namespace twins

@@ -2,9 +2,9 @@
 # Shared by quickstart.sh and test.sh, which source it. `set_up program|tests` makes sure that everything needed to
 # build the program (and its tests) is installed: it installs what is missing with apt, as root or through sudo. If it
 # cannot, it lists the missing Debian packages and stops. If nothing is missing it needs no network, root or apt. MPI,
-# Highway and pybind11 are optional, and so are Chromium, in which tests inspect reports, and MkDocs, which makes a site
-# of the manual: they are installed if that needs no password, else left out. `step` runs a command; if it fails, `step`
-# stops and says what to do. Tested on bare Debian 12 and Debian 13.
+# Highway and pybind11 are optional, and so are Chromium, in which tests inspect reports, qemu-user, in which they check
+# older processors, and MkDocs, which makes a site of the manual: they are installed if that needs no password, else left
+# out. `step` runs a command; if it fails, `step` stops and says what to do. Tested on bare Debian 12 and Debian 13.
 
 preset=release
 build=build/$preset
@@ -38,7 +38,7 @@ option  | Python headers        | python-header                | python3-dev
 look    | Chromium              | command chromium             | chromium
 look    | pandas                | plotting pandas              | python3-pandas
 look    | xarray                | plotting xarray              | python3-xarray
-look    | qemu-x86_64    | command qemu-x86_64         | qemu-user
+look    | qemu-x86_64           | command qemu-x86_64          | qemu-user
 look    | dpkg-shlibdeps        | command dpkg-shlibdeps       | dpkg-dev
 look    | pip                   | python pip                   | python3-pip
 look    | setuptools            | python setuptools            | python3-setuptools
@@ -194,7 +194,8 @@ install_optional() {
   fi
   echo "== not found, left out: ${optional[*]} (Debian's names; without Highway runs
 take longer, without MPI ensembles run in one process, without pybind11-dev and python3-dev Python has no
-cradle.Simulation, without Chromium tests do not inspect reports, without MkDocs they do not build the manual's site)"
+cradle.Simulation, without Chromium tests do not inspect reports, without qemu-user they do not check older processors,
+without MkDocs they do not build the manual's site)"
 }
 
 # set_up program|tests
@@ -211,7 +212,7 @@ set_up() {
   apt_get install -y --no-install-recommends "${debian[@]}" ||
     list_missing_and_stop "apt-get install failed (status $?, see above)"
   search_for "$1"
-  ((${#missing[@]} == 0)) || 
+  ((${#missing[@]} == 0)) ||
     list_missing_and_stop "apt has installed its packages, but this is missing still or too old"
 }
 

@@ -54,7 +54,8 @@ class Command {
 
   void note(const std::string& text);
   void does(Action action);
-  /// Runs the command with its arguments, to whose members options are bound.
+  /// Makes the arguments of the command, which `run` gets when the command is chosen. The caller binds options to their
+  /// members.
   template <class Arguments> Arguments& runs(Exit (*run)(const Arguments&)) {
     const auto arguments = std::make_shared<Arguments>();
     does([arguments, run] { return run(*arguments); });

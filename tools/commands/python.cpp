@@ -147,7 +147,7 @@ void add_report(CommandLine& program) {
   command.note("One HTML file with everything in it: it needs no network, and can be sent.");
 }
 
-// Reports quote this file, too.
+// Prints cite.bib of the package, which reports quote too.
 void add_cite(CommandLine& program) {
   Command command = program.add("cite", "the paper and the program as BibTeX", "cradle cite >> my.bib");
   command.does([] {

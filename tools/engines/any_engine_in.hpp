@@ -155,7 +155,7 @@ template <Real T> class MomentIn final : public Moment {
   Number potential_energy() const override {
     return number_of(cradle::potential_energy(configuration(), particles_, elapsed_));
   }
-  // From the two ledgers: what they share cancels.
+  // The difference of the two ledgers of losses, in which what they share cancels.
   Number sticky_excess() const override {
     StickyGas<T> sticky(of_.particles, of_.start);  // a new one: the result must not depend on earlier samples
     sticky.advance(time_);

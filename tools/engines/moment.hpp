@@ -67,14 +67,14 @@ class Moment {
   virtual std::vector<double> column(Column which) const = 0;
   virtual std::vector<std::string> column_text(Column which) const = 0;
   virtual const std::vector<ParticleIndex>& index() const = 0;
-  /// The numbers of the outermost ones.
+  /// The numbers of the outermost particles at the start.
   virtual std::pair<ParticleIndex, ParticleIndex> range() const = 0;
   /// The least and the median gap, and what closure misses, by name.
   virtual std::vector<std::pair<std::string, Number>> gap_numbers() const = 0;
-  /// The same of a run that ends at this time, with a collision.
+  /// The state right after the last collision, of a run that ends with it.
   virtual std::unique_ptr<Moment> after_last_collision() const = 0;
 
-  /// At the start; the gap behind the last particle of a line is NaN.
+  /// What a column was at the start of the run; the gap behind the last particle of a line is NaN.
   virtual std::vector<Number> at_start(Column which, ParticleIndex first, ParticleIndex last) const = 0;
   virtual Number circumference() const = 0;
   virtual double least_mass() const = 0;

@@ -12,7 +12,8 @@ namespace cradle::tools {
 
 namespace {
 
-// The variables of Open MPI; of MPICH, Intel MPI and Slurm by PMI; of Slurm by PMIx.
+// Whether a launcher started this process: Open MPI sets the first variable; MPICH, Intel MPI and Slurm set those of
+// PMI; Slurm also the one of PMIx.
 bool launched() {
   for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMI_RANK", "PMI_SIZE", "PMI_FD", "PMIX_RANK"})
     if (std::getenv(name) != nullptr) return true;
@@ -79,8 +80,8 @@ std::unique_ptr<Crew> make_crew(Interrupt& interrupt) {
   return make_mpi_crew(processes(), interrupt);
 #else
   if (processes() > 1)
-    throw Error("this program cannot share work between processes (" + std::to_string(processes()) +
-                " were launched): build it where MPI is found, or run it without a launcher");
+    throw Error({}, "a program without MPI cannot share work between processes",
+                std::to_string(processes()) + " launched", "build it where MPI is found, or run it without a launcher");
   return std::make_unique<Alone>(interrupt);
 #endif
 }

@@ -23,8 +23,10 @@ ReplicaRecord run_replica(const EnsembleState& ensemble, ReplicaIndex replica, c
   if (run.end == RunEnd::interrupted) throw ReplicaAbandoned();
   ReplicaRecord done{ensemble.layout().row(replica, run), ensemble.layout().values(run), {}};
   if (ensemble.scene().output.every_replica) done.kept = kept_tables(replica, run.result);
-  if (std::any_of(done.values.begin(), done.values.end(), [](double value) { return std::isinf(value); }))
-    throw Error("a number beyond the range of a double, in which statistics are: give other units of length or speed");
+  for (const double value : done.values)
+    if (std::isinf(value))
+      throw Error({}, "a number beyond the range of a double, in which statistics are", fmt::format("{}", value),
+                  "give other units of length or speed");
   return done;
 }
 

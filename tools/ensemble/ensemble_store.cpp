@@ -63,9 +63,12 @@ Study study_described(const JournalHeader& header, const std::string& path, cons
 }  // namespace
 
 Study study_in(const JournalHeader& journal, const std::string& path) {
-  return study_described(
-      journal, path,
-      {{path, 0, ""}, "of other scenes than it names", "", "take it from a copy, or remove it", Exit::io});
+  return study_described(journal, path,
+                         {{path, 0, ""},
+                          "its scenes are not those of its replicas",
+                          "another identity",
+                          "take it from a copy, or remove it",
+                          Exit::io});
 }
 
 Study study_in(const Result& result, const std::string& file) {

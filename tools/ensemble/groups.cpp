@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <set>
 #include <sstream>
-#include <string_view>
 
 #include "cradle/tools/ensemble/state.hpp"
 

@@ -122,7 +122,7 @@ class EnsembleState {
   void take(FailureRecord&& failure);
   void take(RowsRecord&& rows);
   void take(KeptRecord&& kept) { kept_.emplace(kept.replica, std::move(kept.kept)); }
-  // Both check everything in what comes from a file or another process.
+  // These two check everything, since it comes from a file or another process.
   void take(SpreadRecord&& spread, const std::string& from = "a journal");
   void take(TreeNode&& node, const std::string& from = "a journal");
   void check_replicas(const std::string& file) const;

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "cradle/tools/ensemble/study.hpp"
-#include "cradle/tools/ensemble/sweep_points.hpp"
 
 namespace cradle::tools {
 

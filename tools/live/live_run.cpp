@@ -53,7 +53,8 @@ LiveRun::LiveRun(const std::string& checkpoint, const LiveOptions& options)
   try {
     cradle::load(from, rows);
   } catch (const std::invalid_argument& error) {
-    throw Error(std::string("the checkpoint cannot be extended: ") + error.what(), Exit::io);
+    throw Error({checkpoint, 0, ""}, "a checkpoint that cannot be continued", error.what(),
+                "use the program that wrote it, or begin anew", Exit::io);
   }
   for (Group& table : rows) sink_.add(std::move(table));
   run_->load(from);

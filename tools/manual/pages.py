@@ -125,7 +125,7 @@ def on_post_build(config, **_):
 
 
 def on_page_content(html, **_):
-    """In the documentation of the Python package, arguments begin a line: `name: what it is`."""
+    """In the documentation of the Python package, each argument gets a line of its own: `name: what it is`."""
     if 'class="doc doc-contents' not in html:
         return html
     return re.sub(r"(<p>|\n)((?:\w+, )*\w+): ", lambda found: (found[1] if found[1] == "<p>" else "<br>\n")

@@ -195,7 +195,7 @@ template <Enclosing N> class ProvedTables {
     std::optional<N> proved;
     long double bound;
   };
-  // Those of the result that have a row here, as doubles and below /exact.
+  // Calls f for every column of the result that has rows here: that of doubles, and that of decimals below /exact.
   template <class F> void for_each_column(Result& result, F f) const {
     for (const auto& [path, rows] : columns_) {
       const auto slash = path.rfind('/');

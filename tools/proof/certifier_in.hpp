@@ -148,7 +148,7 @@ template <class M> class CertifierIn final : public Certifier {
         broken.bound,     broken.quantity};
   }
 
-  // One whose time and closing speed the file has.
+  // Checks one collision and keeps its time and closing speed, which the file has, too.
   void one_collision(ParticleIndex left, ParticleIndex right, double time) {
     if (const auto doubt = checker_.collision(left, right)) {
       certificate_.doubt = reported(*doubt, time);
@@ -185,10 +185,12 @@ template <class M> class CertifierIn final : public Certifier {
       errors.of_radius = sample.epsilon / of_balls() * (static_cast<long double>(state.sizes.particles) + 64);
     if (!in_gaps_) errors.gap += 2 * errors.place;
     errors_ = errors, since_ = since;
-    // Each is compared with the run's and, where the series has a sample, with the row of the file, later.
+    // Each proved number is compared with that of the run now and, if the series has a sample here, with the row of the
+    // file at the end.
     Agreement<N> run(errors);
+    bool in_file = of_series;
     const auto of_file = [&](const std::string& column, std::optional<N> of_proof, long double bound) {
-      if (of_series) tables_.add("series/" + column, series_rows_, std::move(of_proof), bound);
+      if (in_file) tables_.add("series/" + column, series_rows_, std::move(of_proof), bound);
     };
     const auto same_count = [&](const std::string& name, const std::string& column, std::uint64_t of_run,
                                 std::uint64_t of_proof) {
@@ -219,6 +221,7 @@ template <class M> class CertifierIn final : public Certifier {
       if (!particles_->on_ring()) of_file(name, *of_proof, errors.place);
     }
     for (const End end : {End::left, End::right}) {
+      in_file = of_series && particles_->wall(end) != nullptr;
       const auto k = static_cast<std::size_t>(end);
       const SampledWall& of_run = sample.walls[k];
       const CertainAccount<N>& wall = state.walls[k];
@@ -230,7 +233,8 @@ template <class M> class CertifierIn final : public Certifier {
                   collisions * errors.wall_energy);
       same_number("momentum given by" + name, column + "momentum", of_run.momentum, wall.momentum,
                   collisions * errors.wall_momentum);
-      run.number("energy lost in" + name, of_run.dissipated, wall.dissipated, collisions * errors.wall_energy);
+      same_number("energy lost in" + name, column + "lost", of_run.dissipated, wall.dissipated,
+                  collisions * errors.wall_energy);
     }
     if (asked.of_snapshots) compare_particles(sample.particles, time, run);
     if (const auto& broken = run.broken()) certificate_.doubt = reported(*broken, sample.time.value);
@@ -312,7 +316,7 @@ template <class M> class CertifierIn final : public Certifier {
   }
 
   void add_sample(const RunSample& sample, const RequestedTime& asked, const CertainState<N>& state) {
-    // That of a collision is the exact system's, which has made it by then.
+    // At the last collision the time is that of the exact system, which has made the collision by then.
     const N last = start_ + state.time;
     CertainSample proved_sample{sample.at_collision ? to_double(last) : sample.time.value,
                                 sample.at_collision ? in_decimals(last).high : asked.time.text,
@@ -360,7 +364,7 @@ template <class M> class CertifierIn final : public Certifier {
     certificate_.snapshots.push_back(std::move(exact));
   }
 
-  // Those that wait are checked, and if beside, this returns once those before them are.
+  // Checks the collisions that wait. With beside_ they are checked on another thread, after those before them.
   void check() {
     await_check();
     std::swap(proposed_, checked_);
@@ -380,7 +384,7 @@ template <class M> class CertifierIn final : public Certifier {
     throw ProofEnds();
   }
 
-  // Collisions of the run.
+  // Collisions that the run has made and that are not checked yet; at most so many wait.
   static constexpr std::size_t most_proposed = 16384;
   struct Proposed {
     std::vector<std::pair<ParticleIndex, ParticleIndex>> pairs;
@@ -395,7 +399,7 @@ template <class M> class CertifierIn final : public Certifier {
   bool events_, in_gaps_;
   Checker<N> checker_;
   Certificate certificate_;
-  // Of the run's tables: what is proved of them, and how far off the run may be at the last sample.
+  // What is proved of the run's tables, and by how much the run may be off at the last sample.
   ProvedTables<N> tables_;
   struct Meeting {
     N time, closing;
@@ -404,7 +408,7 @@ template <class M> class CertifierIn final : public Certifier {
   std::vector<std::pair<Enclosed, Enclosed>> between_;  // gaps and closing speeds of the last snapshot
   RunErrors errors_;
   long double since_ = 0;
-  std::size_t snapshots_ = 0, series_rows_ = 0;  // that the run has taken
+  std::size_t snapshots_ = 0, series_rows_ = 0;  // how many the run has taken
   bool beside_ = false;
   Proposed proposed_, checked_;                      // next and last
   std::future<std::optional<DoubtAt<N>>> checking_;  // last: waits for the thread at the end

@@ -59,7 +59,7 @@ void check_certifiable(const Scene& scene) {
 
 namespace {
 
-// Of the run that proposes collisions, where these were wrong.
+// Raises the precision of the run that proposes collisions, after it has proposed wrong ones.
 bool raise(Scene& scene, unsigned digits) {
   switch (scene.run.precision) {
   case Precision::double_:

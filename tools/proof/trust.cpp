@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <limits>
 
 #include "cradle/core/base/real.hpp"
@@ -18,7 +17,7 @@ namespace cradle::tools {
 
 namespace {
 
-// To which numbers are compared, by type: those it holds, and no more than are compared at all.
+// The number of digits to which numbers of this type are compared: as many as it holds, 100 at most.
 double digits_held(const Run& run) {
   constexpr double most = 100, per_bit = 0.30102999566398120;
   if (run.precision == Precision::double_) return std::numeric_limits<double>::digits * per_bit;

@@ -3,7 +3,6 @@
 
 #include <optional>
 #include <tuple>
-#include <utility>
 
 #include "cradle/tools/record/averages.hpp"
 #include "cradle/tools/record/correlations.hpp"

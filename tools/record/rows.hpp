@@ -2,7 +2,6 @@
 // ensembles, in a run with a later end, and where only collisions are compared.
 #pragma once
 
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>

@@ -2,7 +2,6 @@
 // how to fill it from a moment of the run. To add a column, add a row.
 #pragma once
 
-#include <concepts>
 #include <cstdint>
 #include <limits>
 #include <utility>

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "cradle/tools/support/errors.hpp"
+#include "cradle/tools/scene/table.hpp"
 
 namespace cradle::tools {
 
@@ -24,7 +25,7 @@ enum class RunEnd : std::uint64_t {
 inline constexpr std::size_t outcome_count = 5;
 
 struct EndRow {
-  RunEnd end;
+  RunEnd type;
   std::string_view text;
   Exit status;
 };
@@ -40,15 +41,9 @@ inline constexpr std::array<EndRow, 9> run_ends{{
     {RunEnd::undecided, "undecided", Exit::lost},
     {RunEnd::unproved, "inelastic collapse of many particles, not proved", Exit::collapse},
 }};
+static_assert(rows_in_order(run_ends));
 
 constexpr const EndRow& end_row(RunEnd end) { return run_ends[static_cast<std::size_t>(end)]; }
-
-constexpr bool run_ends_in_order() {
-  for (const EndRow& row : run_ends)
-    if (&end_row(row.end) != &row) return false;
-  return true;
-}
-static_assert(run_ends_in_order());
 
 /// The exit status for the text in a result; done for other texts.
 constexpr Exit status_of_text(std::string_view text) {

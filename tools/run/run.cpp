@@ -1,7 +1,5 @@
 #include "cradle/tools/run/run.hpp"
 
-#include <fmt/format.h>
-
 #include "cradle/tools/record/schedule.hpp"
 #include "cradle/tools/run/clusters.hpp"
 #include "cradle/tools/run/scene_run.hpp"

@@ -6,7 +6,6 @@
 #include <type_traits>
 
 #include "cradle/tools/engines/in_precision.hpp"
-#include "cradle/tools/engines/precision.hpp"
 #include "cradle/tools/run/report.hpp"
 
 namespace cradle::tools {
@@ -33,8 +32,9 @@ double energy_digits(const Scene& scene, const AnyEngine& engine, const Moment& 
 }
 
 // If rounding may move a collision across the end of a run, it may be the last one, which should not have been made, or
-// one that should have come at any time after it.
-double before_last_collision(const AnyEngine& engine) {
+// one that should have come at any time after it; without a last one, at any time of the run.
+double before_last_collision(const Scene& scene, const AnyEngine& engine) {
+  if (engine.counts().collisions == 0) return scene.run.start.value;
   return std::nextafter(engine.last_collision_time().value, -std::numeric_limits<double>::infinity());
 }
 
@@ -64,8 +64,8 @@ RunEnding::RunEnding(const Scene& scene, const AnyEngine& engine, const Moment& 
                 {"energy_digits", outcome.energy_digits},
                 {"ledger_error", now.ledger_error()}};
   if (account.uncertain || account.uncertain_end)
-    attributes.emplace_back("uncertain_from",
-                            account.uncertain_end ? before_last_collision(engine) : account.first_uncertain.time.value);
+    attributes.emplace_back("uncertain_from", account.uncertain_end ? before_last_collision(scene, engine)
+                                                                    : account.first_uncertain.time.value);
   if (!found) return;
   const std::string floor = collapsing_floor(scene);
   const bool on_floor =

@@ -110,7 +110,8 @@ class EngineRun final : public SceneRun {
       at_collision_ = times.at_collision;
       inspected_ = times.inspected ? std::optional(round_(*times.inspected)) : std::nullopt;
     } catch (const std::invalid_argument& error) {
-      throw Error(std::string("the checkpoint cannot be extended: ") + error.what(), Exit::io);
+      throw Error({}, "a checkpoint that cannot be continued", error.what(),
+                  "use the program that wrote it, or begin anew", Exit::io);
     }
     from.end();
     const Number last = engine_->last_collision_time();

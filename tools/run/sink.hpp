@@ -21,7 +21,7 @@ struct RunStatus {
   double seconds = 0;  // of computing
   double time = 0;
   std::uint64_t collisions = 0;
-  /// At the last check of all particles (guards.hpp); NaN before the first, or if there is none.
+  /// What the last check of all particles found (guards.hpp); NaN before the first check, or if there is none.
   double gap_min = none, closure_gap = none, closure_speed = none;
 
   static constexpr double none = std::numeric_limits<double>::quiet_NaN();
@@ -38,7 +38,8 @@ class Sink : public TableSink {
   using TableSink::add;
   using TableSink::TableSink;
 
-  /// The run is over, and has added all its tables. `attributes` are those of the result, for a file with provenance.
+  /// The run is over and has added all its tables. `attributes` are those of the result; for a file they begin with its
+  /// provenance.
   virtual void end(std::vector<Attribute>&& attributes, RunEnd how) = 0;
 
   /// Called often with the number of collisions that the run has made; it is cheap.

@@ -1,6 +1,6 @@
-// What a scene must be like. Keys: those that are known and apply to its law, initial state and policy (keys.cpp). What
-// several keys say together (checks.cpp): rows that do not meet, particles out of order, two settings for the same
-// thing, numbers beyond the range of the working precision.
+// What a scene must be like. keys.cpp checks that its keys are known and apply to its law, initial state and policy.
+// checks.cpp checks what several keys say together: it refuses rows that do not meet, particles out of order, two
+// settings for the same thing, and numbers beyond the range of the working precision.
 #pragma once
 
 #include "cradle/tools/scene/scene.hpp"

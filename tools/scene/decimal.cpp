@@ -185,24 +185,21 @@ std::string decimal_text(Scaled number, WithPower with_power) {
 
 namespace {
 
-using Integer = Whole;
-using Exact = Scaled;
-
 // Float128 has numbers from 1e-4966 to 1e4932.
 constexpr std::int64_t most_digits_of_sum = 20'000;
 
 // The lowest and the highest power of ten.
-std::pair<std::int64_t, std::int64_t> powers(std::initializer_list<Exact*> numbers) {
+std::pair<std::int64_t, std::int64_t> powers(std::initializer_list<Scaled*> numbers) {
   std::int64_t low = std::numeric_limits<std::int64_t>::max(), high = std::numeric_limits<std::int64_t>::min();
-  for (const Exact* number : numbers)
+  for (const Scaled* number : numbers)
     if (number->integer != 0) low = std::min(low, number->power), high = std::max(high, number->power);
   return low > high ? std::pair<std::int64_t, std::int64_t>() : std::pair(low, high);
 }
 
 // Gives all of these the lowest power of ten.
-void align(std::initializer_list<Exact*> numbers) {
+void align(std::initializer_list<Scaled*> numbers) {
   const std::int64_t low = powers(numbers).first;
-  for (Exact* number : numbers) {
+  for (Scaled* number : numbers) {
     if (number->integer != 0) number->integer *= power_of_ten(number->power - low);
     number->power = low;
   }
@@ -211,7 +208,7 @@ void align(std::initializer_list<Exact*> numbers) {
 bool is_very_long(std::int64_t of_last, std::int64_t) { return of_last > 64 || of_last < -64; }
 
 // Without a power of ten unless it is very long.
-std::string text_of(const Integer& integer, std::int64_t power) {
+std::string text_of(const Whole& integer, std::int64_t power) {
   return decimal_text(Scaled{integer, power}, is_very_long);
 }
 
@@ -222,7 +219,7 @@ std::int64_t digits_of_quotient(std::size_t digits, std::size_t of_integer, std:
 }
 
 // integer 10^power/parts in lowest terms; see decimals_by_parts.
-std::string quotient_text(Integer integer, std::int64_t power, Integer parts, std::size_t digits) {
+std::string quotient_text(Whole integer, std::int64_t power, Whole parts, std::size_t digits) {
   while (parts % 10 == 0) parts /= 10, --power;
   while (parts % 5 == 0) parts /= 5, integer *= 2, --power;
   while (parts % 2 == 0) parts /= 2, integer *= 5, --power;
@@ -257,9 +254,9 @@ std::optional<std::string> quotient_text(std::int64_t integer, std::int64_t powe
 }
 
 // integer 10^power/parts.
-std::string divided(const Integer& integer, std::int64_t power, const Integer& parts, std::size_t digits) {
+std::string divided(const Whole& integer, std::int64_t power, const Whole& parts, std::size_t digits) {
   if (parts == 1) return text_of(integer, power);
-  const Integer common = gcd(integer, parts), least = integer / common, of = parts / common;
+  const Whole common = gcd(integer, parts), least = integer / common, of = parts / common;
   constexpr std::int64_t most = std::numeric_limits<std::int64_t>::max();
   if (least >= 0 && least <= most && of <= most)
     if (auto text = quotient_text(static_cast<std::int64_t>(least), power, static_cast<std::int64_t>(of), digits))
@@ -268,11 +265,11 @@ std::string divided(const Integer& integer, std::int64_t power, const Integer& p
 }
 
 // from + k step/parts up to `until`, of one power of ten.
-DecimalColumn spaced(const Exact& from, const Exact& step, const Integer& parts, const Exact& until,
+DecimalColumn spaced(const Scaled& from, const Scaled& step, const Whole& parts, const Scaled& until,
                      std::size_t digits) {
   DecimalColumn all;
-  const Integer end = until.integer * parts;
-  for (Integer at = from.integer * parts; at <= end; at += step.integer)
+  const Whole end = until.integer * parts;
+  for (Whole at = from.integer * parts; at <= end; at += step.integer)
     all.push_back(divided(at, from.power, parts, digits));
   return all;
 }
@@ -309,7 +306,7 @@ std::optional<std::string> short_sum(std::string_view a_text, std::string_view b
 
 std::optional<std::string> exact_sum(std::string_view a_text, std::string_view b_text, int sign) {
   if (auto quick = short_sum(a_text, b_text, sign)) return quick;
-  Exact a = scaled(a_text), b = scaled(b_text);
+  Scaled a = scaled(a_text), b = scaled(b_text);
   const auto [low, high] = powers({&a, &b});
   if (high - low > most_digits_of_sum) return {};
   align({&a, &b});
@@ -321,11 +318,11 @@ std::string difference(std::string_view a, std::string_view b) {
   // What is left of the smaller one is its sign: it decides a number that would be in the middle between two others.
   const Parts of_a = parts_of(a), of_b = parts_of(b);
   const bool first = of_a.exponent > of_b.exponent;
-  Exact large = scaled(first ? a : b);
+  Scaled large = scaled(first ? a : b);
   const std::int64_t power = std::min(large.power, (first ? of_a : of_b).exponent - most_digits_of_sum);
   large.integer *= power_of_ten(large.power - power);
-  const Integer small = (first ? of_b : of_a).negative ? -1 : 1;
-  return text_of(first ? Integer(large.integer - small) : Integer(small - large.integer), power);
+  const Whole small = (first ? of_b : of_a).negative ? -1 : 1;
+  return text_of(first ? Whole(large.integer - small) : Whole(small - large.integer), power);
 }
 
 std::optional<DecimalColumn> summed_up(std::string_view first, const DecimalColumn& steps, int sign) {
@@ -340,28 +337,28 @@ std::optional<DecimalColumn> summed_up(std::string_view first, const DecimalColu
 
 bool of_one_scale(const Decimal& a, const Decimal& b, const Decimal& c) {
   constexpr std::int64_t most_digits = 4000;
-  Exact first = scaled(a.text), second = scaled(b.text), third = scaled(c.text);
+  Scaled first = scaled(a.text), second = scaled(b.text), third = scaled(c.text);
   const auto [low, high] = powers({&first, &second, &third});
   return high - low <= most_digits;
 }
 
 DecimalColumn decimals_by_step(const Decimal& from, const Decimal& step, const Decimal& until) {
-  Exact first = scaled(from.text), by = scaled(step.text), last = scaled(until.text);
+  Scaled first = scaled(from.text), by = scaled(step.text), last = scaled(until.text);
   align({&first, &by, &last});
   return spaced(first, by, 1, last, 0);
 }
 
 DecimalColumn decimals_by_parts(const Decimal& from, const Decimal& to, std::uint64_t parts, const Decimal& until,
                                 std::size_t digits) {
-  Exact first = scaled(from.text), end = scaled(to.text), last = scaled(until.text);
+  Scaled first = scaled(from.text), end = scaled(to.text), last = scaled(until.text);
   align({&first, &end, &last});
   end.integer -= first.integer;
   return spaced(first, end, parts, last, digits + 5);
 }
 
 Decimal decimal_between(const Decimal& from, const Decimal& to, const Decimal& share) {
-  Exact first = scaled(from.text), way = scaled(to.text);
-  const Exact part = scaled(share.text);
+  Scaled first = scaled(from.text), way = scaled(to.text);
+  const Scaled part = scaled(share.text);
   align({&first, &way});
   way.integer = (way.integer - first.integer) * part.integer, way.power += part.power;
   align({&first, &way});
@@ -389,23 +386,23 @@ std::optional<std::string> sum_of_products(const DecimalColumn& a, const Decimal
   constexpr std::size_t most_terms = 100'000;
   constexpr std::int64_t most_digits = 2000;
   if (a.size() > most_terms) return {};
-  std::map<std::int64_t, Integer> sums;  // by powers of ten
+  std::map<std::int64_t, Whole> sums;  // by powers of ten
   for (std::size_t i = 0; i < a.size(); ++i) {
-    Integer product = 1;
+    Whole product = 1;
     std::int64_t power = 0;
     for (const DecimalColumn* column : {&a, &b}) {
       if (column->empty()) continue;
-      const Exact factor = scaled((*column)[i]);
+      const Scaled factor = scaled((*column)[i]);
       product *= factor.integer;
       power += factor.power;
     }
     if (product != 0) sums[power] += product;
   }
-  Integer sum = 0;
+  Whole sum = 0;
   if (sums.empty()) return "0";
   const std::int64_t lowest = sums.begin()->first;
   if (sums.rbegin()->first - lowest > most_digits) return {};
-  for (const auto& [power, of_it] : sums) sum += of_it * pow(Integer(10), static_cast<unsigned>(power - lowest));
+  for (const auto& [power, of_it] : sums) sum += of_it * pow(Whole(10), static_cast<unsigned>(power - lowest));
   return sum.str() + "e" + std::to_string(lowest);
 }
 

@@ -1,4 +1,4 @@
-// The table of keys. To add a key, add a member in scene.hpp and a row here.
+// The table of keys. To add a key, add a member in scene.hpp, laws.hpp or initial.hpp, and a row here.
 #include "cradle/tools/scene/fields.hpp"
 
 #include <fmt/format.h>
@@ -162,7 +162,7 @@ const std::string scalar_names = names_of(scalar_rows), law_names = names_of(law
 constexpr std::string_view any = "(-inf, inf)";
 constexpr std::string_view within_run = "[run.start, run.until]";
 
-// A text with the name of a wall in it; it stays where it is.
+// Puts the name of a wall into a text. The text lives as long as the program, since rows only refer to their texts.
 std::string_view of_side(std::string_view text, std::string_view side) {
   static std::deque<std::string> texts;
   return texts.emplace_back(fmt::format(fmt::runtime(text), side));
@@ -285,8 +285,8 @@ const Field fields_before_walls[] = {
      "mixture starts out of equilibrium"},
     {"initial.file", initial_of<&Initial::file>, "", "", "", &list,
      "CSV file of the particles, relative to the scene: a line x,v, x,v,m or gap,v (tools/manual/scenes.md), then "
-     "decimals; "
-     "or a result, the last snapshot of which is taken if it has all particles; results hold the particles themselves"},
+     "decimals; or a result, the last snapshot of which is taken if it has all particles; results hold the particles "
+     "themselves"},
     {"initial.x", initial_of<&Initial::x>, "l", "", any, &list, "positions, increasing; instead of a file"},
     {"initial.gap", initial_of<&Initial::gap>, "l", "", "[0, inf)", &list,
      "distances to the next particle, of any size, of all particles but the last; instead of initial.x, or beside the "

@@ -29,7 +29,7 @@ std::string_view nearest_key(std::string_view key) {
   return nearest;
 }
 
-// What is called otherwise here, or is not there.
+// A key that users may expect in this table, and what to do instead.
 struct OtherName {
   std::string_view table, name, advice;
 };

@@ -70,7 +70,7 @@ struct Run {
   Decimal merge_speed;              // merge
   std::optional<Decimal> stop_gap;  // stop
 
-  /// That numbers of the working precision have.
+  /// How many decimal digits numbers of the working precision have.
   unsigned decimal_digits() const {
     const unsigned own = scalar_row(precision).digits;
     return own > 0 ? own : static_cast<unsigned>(digits);

@@ -168,7 +168,7 @@ template <Real T> std::optional<Wall<T>> wall_of(const WallAt& wall, const Initi
   return made;
 }
 
-// Not of balls: they enclose differences of their own numbers.
+// The distance of a particle to the wall beside it. Nothing for balls: they enclose differences of their own numbers.
 template <Real T>
 std::optional<AtWall<T>> at_wall_in(const Scene& scene, End end, const Displacement& displacement,
                                     const cradle::Particles<T>& particles, const std::optional<Wall<T>>& wall) {

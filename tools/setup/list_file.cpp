@@ -159,7 +159,7 @@ void check_sums(const DecimalColumn& given, const DecimalColumn& sums, const Pla
                   "remove the column that is wrong");
 }
 
-// What is missing to `sum` in these numbers, by rounding, is added to the largest of them.
+// Adds to the largest number what rounding has left missing from the sum.
 void complete(DecimalColumn& numbers, std::string_view sum, const Place& place) {
   const auto sums = summed_up("0", numbers, 1);
   std::size_t largest = 0;

@@ -4,11 +4,9 @@
 // decimals in x and v.
 #pragma once
 
-#include <cstddef>
 #include <filesystem>
 #include <istream>
 #include <string>
-#include <string_view>
 
 #include "cradle/tools/scene/particle_order.hpp"
 #include "cradle/tools/scene/scene.hpp"

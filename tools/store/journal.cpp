@@ -78,7 +78,7 @@ JournalReader::JournalReader(const std::string& path) : path_(path) {
     check_program(program, path);
     load(from, header_);
   } catch (const std::invalid_argument& error) {
-    throw Error(path + ": " + error.what(), Exit::io);
+    throw Error({path, 0, ""}, "a damaged journal", error.what(), "take it from a copy, or remove it", Exit::io);
   }
 }
 

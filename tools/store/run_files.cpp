@@ -10,7 +10,6 @@
 #include "cradle/tools/result/writer.hpp"
 #include "cradle/tools/support/checksum.hpp"
 #include "cradle/tools/support/notify.hpp"
-#include "cradle/tools/support/version.hpp"
 
 namespace cradle::tools {
 

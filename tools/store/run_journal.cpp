@@ -4,11 +4,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
-#include <iterator>
 #include <string>
-#include <type_traits>
 
 #include "cradle/tools/record/rows.hpp"
 #include "cradle/tools/run/run.hpp"

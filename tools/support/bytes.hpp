@@ -21,7 +21,7 @@ template <class X> X from_bytes(std::string bytes) {
     require_state(from.left() == 0, "it is followed by more");
     return x;
   } catch (const std::invalid_argument& error) {
-    throw Error(std::string("a record that cannot be read: ") + error.what(), Exit::io);
+    throw Error({}, "a record that cannot be read", error.what(), "take the file from a copy, or remove it", Exit::io);
   }
 }
 

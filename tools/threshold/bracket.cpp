@@ -1,7 +1,7 @@
 #include "cradle/tools/threshold/bracket.hpp"
 
 #include <algorithm>
-#include <string>
+#include <cstdlib>
 #include <utility>
 
 #include <fmt/format.h>

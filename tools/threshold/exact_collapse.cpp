@@ -2,10 +2,7 @@
 // L^2 - S L + e^2 = 0, u the speed at which the gap just closed opens, w the closing speed of the other one.
 #include "cradle/tools/threshold/exact_collapse.hpp"
 
-#include <algorithm>
 #include <array>
-#include <compare>
-#include <string>
 
 #include "cradle/tools/scene/rational.hpp"
 #include "cradle/tools/scene/scene.hpp"

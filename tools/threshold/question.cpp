@@ -85,7 +85,7 @@ void Question::choose_outcome(const std::string& compare) {
       for (const CompareRow& known : compared) names += (names.empty() ? "" : ", ") + std::string(known.name);
       throw Error({"", 0, "--outcome"}, "no such outcome", compare, "give one of " + names);
     }
-    compare_ = row->what;
+    compare_ = row->type;
   }
   const auto refuse = [&](const char* what, const char* advice) {
     throw Error({"", 0, "--outcome"}, what, std::string(this->what().name), advice);

@@ -41,10 +41,11 @@ class Search {
     RunAt low = at(question_.low()), high = at(question_.high());
     if (low.outcome == high.outcome) {
       ::unlink(part_.c_str());
+      const bool exact = low.how == closed_form && high.how == closed_form;
       throw Error({"", 0, "--vary"}, "the same outcome at both ends",
                   fmt::format("{} at {} in {} and at {} in {}", low.outcome, low.value, low.how, high.value, high.how),
-                  "give ends between which it changes, a type of more digits (--set run.precision), or another outcome "
-                  "(--outcome)");
+                  fmt::format("give ends between which it changes,{} or another outcome (--outcome)",
+                              exact ? "" : " a type of more digits (--set run.precision),"));
     }
     while (bracket_->next()) {
       const RunAt run = at(*bracket_->next());
@@ -106,7 +107,7 @@ class Search {
   }
 
   RunAt run_at(const Decimal& value) {
-    if (question_.what().what == Compare::collapse)
+    if (question_.what().type == Compare::collapse)
       if (const auto exact = exact_collapse(question_.scene_at(value, false).value()))
         return {value.text, std::string(exact->collapse ? end_row(RunEnd::collapsed).text : no_collapse),
                 exact->collisions, 0, closed_form};
@@ -142,7 +143,7 @@ class Search {
     const auto seen = [&](const std::string& why) { return ThresholdEnd{run, false, "seen in " + run.how + why}; };
     if (run.how == closed_form) return {run, true, "proved in closed form"};
     if (!options_.prove) return seen("");
-    if (question_.what().what == Compare::pair) return seen("; no proof of clusters");
+    if (question_.what().type == Compare::pair) return seen("; no proof of clusters");
     if (status_of_text(run.outcome) == Exit::collapse) return seen("; `certify` proves no collapse");
     const Decimal value(run.value);
     Scene scene = question_.scene_at(value, false).value();

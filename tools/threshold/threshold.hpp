@@ -17,6 +17,7 @@
 #include "cradle/tools/store/overwrite.hpp"
 #include "cradle/tools/support/interrupt.hpp"
 #include "cradle/tools/support/progress.hpp"
+#include "cradle/tools/scene/table.hpp"
 #include "cradle/tools/threshold/bracket.hpp"
 
 namespace cradle::tools {
@@ -25,7 +26,7 @@ namespace cradle::tools {
 enum class Compare { collapse, gap, collisions, merges, pair };
 
 struct CompareRow {
-  Compare what;
+  Compare type;
   std::string_view name, text;
 };
 inline constexpr std::array<CompareRow, 5> compared{{
@@ -35,6 +36,7 @@ inline constexpr std::array<CompareRow, 5> compared{{
     {Compare::merges, "merges", "number of merges"},
     {Compare::pair, "pair", "whether the two heavy clusters pass or stick"},
 }};
+static_assert(rows_in_order(compared));
 
 inline constexpr std::string_view no_collapse = "no collapse";
 

@@ -187,6 +187,7 @@ TEST(Agreement, WhateverIsPlantedInTheFileIsFoundAndNamed) {
                                "series/wall_left_energy",
                                "series/wall_left_momentum",
                                "series/wall_right_energy",
+                               "series/wall_right_lost",
                                "series/wall_right_momentum"};
   for (const char* column : {"x", "v", "m", "gap", "closing_speed"})
     for (const char* snapshot : {"snapshots/0000/", "snapshots/0001/"}) all.insert(snapshot + std::string(column));

@@ -30,8 +30,8 @@ class Runs(small.Case):
                     self.assertEqual(again.series.energy.values.tolist(), first.series.energy.values.tolist())
 
     def test_dicts_become_the_scene_that_they_came_from(self):
-        scene = {"title": 'a "scene"', "law": {"type": "wet", "loss": 1e-4}, "run": {"until": 10, "events": True},
-                 "output": {"snapshots": [1, 2.5], "series": {"points": 5}}}
+        scene = {"title": 'a "scene"\t\x7f', "law": {"type": "wet", "loss": 1e-4},
+                 "run": {"until": 10, "events": True}, "output": {"snapshots": [1, 2.5], "series": {"points": 5}}}
         self.assertEqual(parse_toml(scene_text(scene)), scene)
 
     def test_collapse_is_a_result_with_its_status(self):

@@ -153,6 +153,12 @@ class State(small.Case):
         sim.step(10**9)
         self.assertEqual((sim.time, sim.outcome), (60, "reached the end"))
 
+    def test_documented(self):
+        self.assertEqual(cradle.Simulation.x.__doc__, "positions in l, shape (n,)")
+        for name, member in vars(cradle.Simulation).items():
+            if isinstance(member, property):
+                self.assertTrue(member.__doc__, name)
+
     def test_shown(self):
         sim = cradle.Simulation("fig2", set=small.SHOCK | {"title": "<b>"})
         self.assertRegex(repr(sim), r"^<simulation fig2: t = 0 of 60, 0 collisions, energy 25; double; in progress>$")

@@ -90,6 +90,8 @@ class Site(unittest.TestCase):
         names = self.pages["python-functions.html"].ids
         for name in ("cradle.run", "cradle.open", "cradle.Simulation", "cradle.resume"):
             self.assertIn(name, names)
+        with open(os.path.join(self.folder, "python-functions.html"), encoding="utf-8") as file:
+            self.assertIn("<code>x</code>: positions in l, shape (n,)", file.read())
 
     @unittest.skipUnless(browser.find(), "no Chromium (Debian: chromium)")
     def test_reader_finds_words_from_a_disk(self):

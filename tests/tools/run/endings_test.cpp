@@ -281,6 +281,11 @@ TEST_F(Endings, CollisionsAcrossTheEndAreUncertainFromTheLastOneOn) {
         "initial = {type = \"list\", x = [0, 2, 3.5, 5, 6], v = [0.5, 1, 1, 2, 0.5]}\n");
   shell("cradle run scene.toml --force -o end.h5", 0);  // makes 3 collisions; the fourth is at 1.2e21
   EXPECT_LT(tools::attribute<double>(read("end.h5").attributes, "uncertain_from", ""), 1.2e21);
+  write("scene.toml",
+        "law = {type = \"inelastic\", restitution = 0.5}\ninitial = {type = \"list\", x = [0, 1], v = [1, 0]}\n"
+        "run.until = 0.9999999999999999\n");
+  shell("cradle run scene.toml --force -o end.h5", 0);  // makes none; the first is at 1
+  EXPECT_EQ(tools::attribute<double>(read("end.h5").attributes, "uncertain_from", ""), 0);
 }
 
 TEST_F(Endings, NoRunStaysAtOneTime) {

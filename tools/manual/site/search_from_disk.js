@@ -1,6 +1,6 @@
 // A page that is opened from a disk may neither fetch the index of the search nor start a worker. There the index comes
-// as a script (written by pages.py), and the worker's script runs in a hidden frame, from the time on when the reader
-// goes to the search field: it takes the browser a moment to prepare the index.
+// as a script (written by pages.py), and the worker's script runs in a hidden frame. It starts when the reader goes to
+// the search field, since the browser needs a moment to prepare the index.
 if (location.protocol === "file:") {
   const index = new URL("search/search_index.js", document.currentScript.src);
   document.write(`<script src="${index}"><\/script>`);

@@ -33,7 +33,7 @@ def value_text(value: Any) -> str:
     """A value as TOML: numbers with all their digits (a Decimal too, not a Fraction), texts quoted, lists in
     brackets."""
     if isinstance(value, (bool, str)):
-        return json.dumps(value, ensure_ascii=False)  # written as in TOML
+        return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")  # written as in TOML
     if isinstance(value, Mapping):
         return "{ " + ", ".join(f"{key} = {value_text(inner)}" for key, inner in given(value)) + " }"
     if hasattr(value, "tolist"):  # numpy's

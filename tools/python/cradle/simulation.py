@@ -8,6 +8,7 @@ import importlib.machinery
 import importlib.util
 import operator
 import os
+import re
 import sys
 import warnings
 from collections.abc import Callable
@@ -47,11 +48,20 @@ class Collision(NamedTuple):
     closing_speed: float
 
 
-def of_run(name: str, text: str, convert: Callable[[Any], Any] = lambda value: value) -> Any:
+def of_run(name: str, convert: Callable[[Any], Any] = lambda value: value) -> Any:
     """A property of a simulation, read from the run that it holds."""
-    return property(lambda simulation: convert(getattr(simulation._run, name)), doc=text)
+    return property(lambda simulation: convert(getattr(simulation._run, name)))
 
 
+def documented(simulation: type) -> type:
+    """Gives properties their lines of the class's documentation, in which the manual's site finds them."""
+    for name, text in re.findall(r"^    (\w+): (.+)$", simulation.__doc__ or "", re.MULTILINE):
+        if isinstance(of_class := vars(simulation).get(name), property):
+            of_class.__doc__ = text
+    return simulation
+
+
+@documented
 class Simulation:
     """A run of a scene that advances when asked to, with the bits of `cradle run`.
 
@@ -71,6 +81,24 @@ class Simulation:
     right (before the first collision those that are about to collide; on a ring all). They are read-only float64 copies
     in units of m (mass of a particle), l (length) and t (time) of the scene; decimals() and mpmath() have all digits
     of wider types. Between calls the state is that at `time`, after all collisions until then.
+
+    time: in t
+    until: the end, run.until, in t
+    collisions: since the start, all, those below the cut-off and merges included
+    merges: since the start
+    energy: kinetic, in m l^2/t^2, of all particles of the scene, also those that the front has not reached
+    outcome: "in progress", then how the run ended, as in results: "reached the end", "inelastic collapse", ...
+    over: whether the run has ended, so that write() has a result
+    x: positions in l, shape (n,)
+    v: velocities in l/t, shape (n,)
+    m: masses in m, shape (n,)
+    gap: distances between neighbours in l, exact however small: shape (n - 1,), on a ring (n,)
+    closing_speed: velocity of the left minus that of the right neighbour, in l/t: shape (n - 1,), on a ring (n,)
+    index: numbers of the particles at the start, from 0, as int64 of shape (n,); of merged ones the first
+    name: the scene's name
+    precision: the type of the numbers, "double", "mpfr, 50 digits", ...
+    scene_text: the effective scene, as TOML
+    scene: the effective scene as nested dicts, numbers as floats
 
     Ctrl-C stops a call at a collision, and so does an exception in a function: it arrives here, and the run can
     continue. A call without functions lets other threads of Python run. One call at a time: others raise Error.
@@ -198,31 +226,26 @@ class Simulation:
 
     # ---- the state
 
-    time: float = of_run("time", "In t.")
-    until: float = of_run("until", "The end, run.until, in t.", float)
-    collisions: int = of_run("collisions", "Since the start, all, those below the cut-off and merges included.")
-    merges: int = of_run("merges", "Since the start.")
-    energy: float = of_run("energy", """Kinetic, in m l^2/t^2, of all particles of the scene, also those that the front
-        has not reached.""")
-    outcome: str = of_run("over", """"in progress", then how the run ended, as in results: "reached the end",
-        "inelastic collapse", ...""", lambda over: over[0] if over else "in progress")
-    over: bool = of_run("over", "Whether the run has ended, so that write() has a result.", bool)
-    x: np.ndarray = of_run("x", "Positions in l, shape (n,).")
-    v: np.ndarray = of_run("v", "Velocities in l/t, shape (n,).")
-    m: np.ndarray = of_run("m", "Masses in m, shape (n,).")
-    gap: np.ndarray = of_run("gap", """Distances between neighbours in l, exact however small: shape (n - 1,), on a ring
-        (n,).""")
-    closing_speed: np.ndarray = of_run("closing_speed", """Velocity of the left minus that of the right neighbour, in
-        l/t: shape (n - 1,), on a ring (n,).""")
-    index: np.ndarray = of_run("index", """Numbers of the particles at the start, from 0, as int64 of shape (n,); of
-        merged ones the first.""")
-    name: str = of_run("name", "The scene's name.")
-    precision: str = of_run("precision", """The type of the numbers, "double", "mpfr, 50 digits", ...""")
-    scene_text: str = of_run("scene", "The effective scene, as TOML.")
-    scene: dict[str, Any] = of_run("scene", "The same as nested dicts, numbers as floats.", parse_toml)
+    time: float = of_run("time")
+    until: float = of_run("until", float)
+    collisions: int = of_run("collisions")
+    merges: int = of_run("merges")
+    energy: float = of_run("energy")
+    outcome: str = of_run("over", lambda over: over[0] if over else "in progress")
+    over: bool = of_run("over", bool)
+    x: np.ndarray = of_run("x")
+    v: np.ndarray = of_run("v")
+    m: np.ndarray = of_run("m")
+    gap: np.ndarray = of_run("gap")
+    closing_speed: np.ndarray = of_run("closing_speed")
+    index: np.ndarray = of_run("index")
+    name: str = of_run("name")
+    precision: str = of_run("precision")
+    scene_text: str = of_run("scene")
+    scene: dict[str, Any] = of_run("scene", parse_toml)
 
     def decimals(self, name: str) -> str | list[str]:
-        """The same with all digits of the run's type, as decimal texts.
+        """A quantity of the state with all digits of the run's type, as decimal texts.
 
         name: "time" or "energy": one text; "x", "v", "m", "gap" or "closing_speed": a list.
         """
@@ -231,7 +254,7 @@ class Simulation:
         return getattr(self._run, f"{name}_text")
 
     def mpmath(self, name: str, digits: int | None = None):
-        """The same as mpmath.mpf (one, or a list) with the given digits, by default those of the longest text."""
+        """What decimals() gives as mpmath.mpf (one, or a list), with these digits, by default those of the longest text."""
         mpmath = imported("mpmath")
         texts = self.decimals(name)
         one = isinstance(texts, str)

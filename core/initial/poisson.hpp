@@ -49,8 +49,8 @@ inline Displacement looked_up(Displacements all) {
 
 // floor(a b/c), 0 <= a < c < 2^63, 0 <= b < 2^62.
 inline std::int64_t share_of(std::int64_t a, std::int64_t b, std::int64_t c) {
-  __extension__ using Wide = __int128;
-  return static_cast<std::int64_t>(Wide{a} * b / c);
+  __extension__ using Integer128 = __int128;
+  return static_cast<std::int64_t>(Integer128{a} * b / c);
 }
 
 }  // namespace detail

@@ -8,6 +8,7 @@
 #include "cradle/tools/record/rows.hpp"
 #include "cradle/tools/result/growing_tables.hpp"
 #include "cradle/tools/result/reader.hpp"
+#include "cradle/tools/run/run.hpp"
 #include "cradle/tools/scene/scene.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
 #include "cradle/tools/store/run_files.hpp"

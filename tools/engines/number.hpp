@@ -6,7 +6,6 @@
 #include <memory>
 #include <string>
 #include <string_view>
-#include <utility>
 
 #include "cradle/precision/text.hpp"
 #include "cradle/tools/scene/decimal.hpp"

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "cradle/tools/support/errors.hpp"
-#include "cradle/tools/scene/table.hpp"
+#include "cradle/tools/support/table.hpp"
 
 namespace cradle::tools {
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "cradle/tools/scene/decimal.hpp"
-#include "cradle/tools/scene/table.hpp"
+#include "cradle/tools/support/table.hpp"
 
 namespace cradle::tools {
 

@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "cradle/tools/scene/decimal.hpp"
-#include "cradle/tools/scene/table.hpp"
+#include "cradle/tools/support/table.hpp"
 
 namespace cradle::tools {
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "cradle/tools/scene/table.hpp"
+#include "cradle/tools/support/table.hpp"
 
 namespace cradle::tools {
 

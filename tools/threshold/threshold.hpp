@@ -17,7 +17,7 @@
 #include "cradle/tools/store/overwrite.hpp"
 #include "cradle/tools/support/interrupt.hpp"
 #include "cradle/tools/support/progress.hpp"
-#include "cradle/tools/scene/table.hpp"
+#include "cradle/tools/support/table.hpp"
 #include "cradle/tools/threshold/bracket.hpp"
 
 namespace cradle::tools {

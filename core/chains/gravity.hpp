@@ -18,10 +18,11 @@ template <Real T> struct Rebound { T speed, height; };
 template <Real T> class Gravity {
  public:
   explicit Gravity(const Particles<T>& particles)
-      : acceleration_(particles.acceleration()), splitter_(splitter<T>()), left_(end(particles, End::left)),
-        right_(end(particles, End::right)), piles_(particles.count() > 1 && particles.holding() != nullptr),
+      : acceleration_(particles.acceleration()), left_(end(particles, End::left)), right_(end(particles, End::right)),
+        piles_(particles.count() > 1 && particles.holding() != nullptr),
         pile_end_(piles_ && particles.holding() == particles.wall(End::right) ? End::right : End::left),
         anywhere_(acceleration_ != T(0) || shaken()), gaps_(particles.gaps()), count_(particles.count()) {
+    if (anywhere_) splitter_ = splitter<T>();
     const bool left = pile_end_ == End::left;
     if (particles.wall(left ? End::right : End::left) != nullptr) other_wall_ = left ? gaps_.last : gaps_.first;
   }
@@ -127,7 +128,7 @@ template <Real T> class Gravity {
   End end_below(ParticleIndex gap) const { return gap == above_pile_ ? pile_end_ : end_at(gap); }
   T pull(End end) const { return end == End::left ? T(-acceleration_) : acceleration_; }
 
-  T acceleration_, splitter_;
+  T acceleration_, splitter_{0};
   AtEnd left_, right_;
   bool piles_;
   End pile_end_;

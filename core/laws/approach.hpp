@@ -34,6 +34,7 @@ concept RoundsToNearest = requires {
 template <Real T> T splitter() {
   T power(1);
   const T epsilon = std::numeric_limits<T>::epsilon();
+  if (epsilon == T(0)) return T(1);  // nothing is rounded
   while (power * power * epsilon < T(2)) power += power;
   return power + T(1);
 }

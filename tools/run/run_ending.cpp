@@ -5,6 +5,7 @@
 #include <limits>
 #include <type_traits>
 
+#include "cradle/precision/bin_float.hpp"
 #include "cradle/tools/engines/in_precision.hpp"
 #include "cradle/tools/run/report.hpp"
 
@@ -32,10 +33,14 @@ double energy_digits(const Scene& scene, const AnyEngine& engine, const Moment& 
 }
 
 // If rounding may move a collision across the end of a run, it may be the last one, which should not have been made, or
-// one that should have come at any time after it; without a last one, at any time of the run.
+// one that should have come at any time after it; without a last one, at any time of the run. The double is not later
+// than that.
 double before_last_collision(const Scene& scene, const AnyEngine& engine) {
-  if (engine.counts().collisions == 0) return scene.run.start.value;
-  return std::nextafter(engine.last_collision_time().value, -std::numeric_limits<double>::infinity());
+  const Decimal& start = scene.run.start;
+  const bool none = engine.counts().collisions == 0;
+  if (none && !(from_text<bin_float>(start.text) < bin_float(start.value))) return start.value;
+  return std::nextafter(none ? start.value : engine.last_collision_time().value,
+                        -std::numeric_limits<double>::infinity());
 }
 
 }  // namespace

@@ -286,6 +286,9 @@ TEST_F(Endings, CollisionsAcrossTheEndAreUncertainFromTheLastOneOn) {
         "run.until = 0.9999999999999999\n");
   shell("cradle run scene.toml --force -o end.h5", 0);  // makes none; the first is at 1
   EXPECT_EQ(tools::attribute<double>(read("end.h5").attributes, "uncertain_from", ""), 0);
+  // The double nearest to 0.1 is later than that.
+  shell("cradle run scene.toml --force --set run.start=0.1 --set run.until=1.0999999999999999 -o end.h5", 0);
+  EXPECT_EQ(tools::attribute<double>(read("end.h5").attributes, "uncertain_from", ""), std::nextafter(0.1, 0));
 }
 
 TEST_F(Endings, NoRunStaysAtOneTime) {

@@ -5,8 +5,8 @@
 
 #include <filesystem>
 
-#include "cradle/tools/engines/precision.hpp"
 #include "cradle/tools/result/reader.hpp"
+#include "cradle/tools/run/run.hpp"
 
 namespace cradle::tools {
 

@@ -12,6 +12,7 @@
 #include "cradle/core/observe/profile.hpp"
 #include "cradle/tests/core/between_walls.hpp"
 #include "cradle/tests/core/compare.hpp"
+#include "cradle/tests/core/rational.hpp"
 
 namespace cradle::test::gravity_test {
 
@@ -347,8 +348,9 @@ TEST(Gravity, WhereItCannotBeIsSaid) {
   EXPECT_THROW(between(-1, particles, Wall<double>{0., 0., 0.}), std::invalid_argument);
   EXPECT_NO_THROW(between(1, particles, Wall<double>{0., 0., 0.}));
   EXPECT_THROW(between(NAN, particles), std::invalid_argument);
-  EXPECT_THROW(gap_run<double>(between(-1, particles), Inelastic<double>(1)), std::invalid_argument);
-  EXPECT_THROW(position_run<double>(between(-1, particles), Inelastic<double>(1)), std::invalid_argument);
+  const auto exact = between<Rational>(-1, list<Rational>({1, 2}, {0, 0}));  // which has no square roots
+  EXPECT_THROW(GapChain<Rational>(exact, 0), std::invalid_argument);
+  EXPECT_THROW(PositionChain<Rational>(exact, 0), std::invalid_argument);
   EXPECT_THROW(ClusterChain<double>(between(-1, particles), 0.), std::invalid_argument);
   EXPECT_THROW(StickyGas<double>(between(-1, particles), 0.), std::invalid_argument);
   EXPECT_NO_THROW(gap_run<double>(between(0, particles), Inelastic<double>(1)));

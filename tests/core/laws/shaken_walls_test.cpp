@@ -175,8 +175,6 @@ TEST(ShakenWalls, WhereTheyCannotBeIsSaid) {
        {std::tuple(0., 0., 1.), {1., 0., 0.}, {1., 0., -1.}, {double(NAN), 0., 1.}, {1., double(NAN), 1.}})
     EXPECT_THROW(shaken(Shape::sine, amplitude, phase, frequency), std::invalid_argument);
   const auto with_sine = between(0, particles, wall(0, sine));
-  EXPECT_THROW(gap_run<double>(with_sine, Inelastic<double>(1)), std::invalid_argument);
-  EXPECT_THROW(position_run<double>(with_sine, Inelastic<double>(1)), std::invalid_argument);
   EXPECT_THROW(ClusterChain<double>(with_sine, 0.), std::invalid_argument);
 }
 

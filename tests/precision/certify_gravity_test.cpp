@@ -43,9 +43,8 @@ TEST(CertifyGravity, AnElasticColumnIsKnownUpToTheRoundingOfSums) {
     return std::make_shared<Walled<T>>(list<T>({T(1), T(2)}, {T(0), T(T(5) / T(8))}), Wall<T>{T(0)}, std::nullopt,
                                        T(-2));
   };
-  const Collisions collisions = made_by(
-      Simulation(Inelastic<double>(1), GapChain<double, IndividualMasses<double>>(particles(0.), 0.)),
-      1000);
+  const Collisions collisions =
+      made_by(Simulation(Inelastic<double>(1), GapChain<double, IndividualMasses<double>>(particles(0.), 0.)), 1000);
   ASSERT_GT(collisions.size(), 1000U);
   Checker<B> checker(particles(B(0)), elastic());
   ASSERT_FALSE(checker.collisions(collisions));

@@ -4,9 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <boost/multiprecision/cpp_bin_float.hpp>
-#include <boost/multiprecision/cpp_int.hpp>
 #include <cmath>
-#include <cstdint>
+#include <cstddef>
 #include <cstdio>
 #include <ios>
 #include <limits>
@@ -14,6 +13,7 @@
 #include <string>
 
 #include "cradle/precision/ball.hpp"
+#include "cradle/precision/fixed_point.hpp"
 
 namespace cradle {
 
@@ -37,40 +37,25 @@ inline std::string decimal_beside(const Wide& x, int digits, bool below) {
   return text(below ? Wide(x - unit) : Wide(x + unit));
 }
 
-// The same decimal of a sum of doubles, in integers, which takes a fiftieth of the time. There is none where that would
-// need too many bits, where the sum is a decimal or in the middle between two, and next to a power of ten.
+// The same decimal of a sum of doubles in fixed point. There is none where the sum does not fit or is a decimal, and
+// next to a power of ten.
 inline std::optional<std::string> quick_decimal_beside(const std::array<double, 3>& sum, int digits, bool below) {
-  namespace mp = boost::multiprecision;
-  using Integer = mp::number<mp::cpp_int_backend<640, 640, mp::signed_magnitude, mp::unchecked, void>, mp::et_off>;
-  constexpr int most_bits = 200, most_power = 60;  // 10^60 has 200 bits
-  int least = std::numeric_limits<int>::max(), most = std::numeric_limits<int>::min();
-  for (const double x : sum)
-    if (x != 0) least = std::min(least, std::ilogb(x) - 52), most = std::max(most, std::ilogb(x) + 2);
-  if (least > most || most - least > most_bits || std::abs(least) > most_bits || digits > most_power) return {};
-  Integer units = 0;  // of 2^least
-  for (const double x : sum)
-    if (x != 0)
-      units += Integer(static_cast<std::int64_t>(std::ldexp(x, 52 - std::ilogb(x)))) << (std::ilogb(x) - 52 - least);
-  if (units == 0) return {};
-  const bool negative = units < 0, up = below == negative;
-  if (negative) units = -units;
-  const auto ten_to = [](int power) { return Integer(pow(Integer(10), static_cast<unsigned>(std::max(power, 0)))); };
-  const Integer first = ten_to(digits - 1), end = first * 10;
-  // From the true exponent, or one less.
-  for (int exponent = static_cast<int>(std::floor((static_cast<double>(msb(units)) + least) * std::log10(2.)));;
-       ++exponent) {
-    const int power = digits - 1 - exponent;
-    if (std::abs(power) > most_power) return {};
-    const Integer over = (units * ten_to(power)) << std::max(least, 0), under = ten_to(-power) << std::max(-least, 0);
-    Integer whole, rest;
-    divide_qr(over, under, whole, rest);
-    if (whole >= end) continue;
-    if (rest == 0 || rest * 2 == under || whole <= first || whole + 1 == end) return {};
-    const std::string text = Integer(up ? Integer(whole + 1) : whole).str();
-    char power_of_ten[16];
-    std::snprintf(power_of_ten, sizeof power_of_ten, "e%+03d", exponent);
-    return (negative ? "-" : "") + text.substr(0, 1) + '.' + text.substr(1) + power_of_ten;
+  auto exact = FixedPoint::sum({sum[0], sum[1], sum[2]});
+  if (!exact) return {};
+  const bool negative = exact->is_negative();
+  if (negative) exact = -*exact;
+  const auto leading = exact->take_leading(static_cast<std::size_t>(digits));
+  if (!leading || exact->is_zero() || exact->nearest() == 0.5) return {};
+  std::string text = leading->digits;
+  if (text.find_first_not_of('0', 1) == text.npos || text.find_first_not_of('9') == text.npos) return {};
+  if (below == negative) {
+    const auto last = text.find_last_not_of('9');
+    ++text[last];
+    std::fill(text.begin() + static_cast<std::ptrdiff_t>(last) + 1, text.end(), '0');
   }
+  char power_of_ten[16];
+  std::snprintf(power_of_ten, sizeof power_of_ten, "e%+03d", leading->exponent);
+  return (negative ? "-" : "") + text.insert(1, ".") + power_of_ten;
 }
 
 inline Enclosure<std::string> decimals(const double_double& middle, double radius, int digits) {

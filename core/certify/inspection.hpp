@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "cradle/core/certify/certain_state.hpp"
 #include "cradle/core/certify/certain_walls.hpp"
@@ -40,7 +41,7 @@ template <Enclosing N> class Inspection {
       const Line& line = lines_[b];
       present += lines_.mass(b) * squared(motion_.falls ? motion_.velocity_at(b, time_) : line.velocity);
       const N x = b == ahead_ ? place_ahead_ : motion_.place_at(b, time_);
-      state.widest = std::max(state.widest, power_of_ten(x.radius()));
+      widest_ = std::max(widest_, x.radius());
       state.sizes.place = std::max(state.sizes.place, std::abs(to_double(x)));
       if (line.touched && !meets(b))
         if (const Order order = motion_.compare(line.changed, time_); order != Order::less && !state.doubt)
@@ -59,6 +60,8 @@ template <Enclosing N> class Inspection {
     const N twice = all ? present : twice_energy_of_others(first, last, before) + present;
     state.energy = twice * (N(1) / N(2));
     if (motion_.falls) state.sizes.fall_energy = fall_energy();
+    state.widest = power_of_ten(widest_), state.least_gap = power_of_ten(least_gap_);
+    if (of_gap_ >= 0) state.widest_of_gap = power_of_ten(widest_of_gap_) - power_of_ten(gap_of_widest_);
   }
   // Of particles that are not held, which fly on as they began.
   N twice_energy_of_others(ParticleIndex first, ParticleIndex last, const N& twice_of_these) const {
@@ -114,9 +117,9 @@ template <Enclosing N> class Inspection {
     if (b == lines_.seam()) gap += motion_.length;
     if (const Order order = motion_.compare(N(0), gap); order != Order::less && !state.doubt)
       state.doubt = Doubt<N>{Check::gap, order == Order::greater, b, next, N(0), gap};
-    const double size = power_of_ten(gap.size());
-    state.least_gap = std::min(state.least_gap, size);
-    state.widest_of_gap = std::max(state.widest_of_gap, power_of_ten(gap.radius()) - size);
+    least_gap_ = std::min(least_gap_, gap.size());
+    const long double of_gap = static_cast<long double>(gap.radius()) / gap.size();
+    if (of_gap > of_gap_) of_gap_ = of_gap, widest_of_gap_ = gap.radius(), gap_of_widest_ = gap.size();
   }
 
   const Motion<N>& motion_;
@@ -126,6 +129,10 @@ template <Enclosing N> class Inspection {
   const LastMeeting<N>& now_;
   ParticleIndex ahead_ = WorldLines<N>::none;  // the one whose place was last needed, for a gap
   N place_ahead_{0};
+  // What `state` has as powers of ten; a logarithm for each particle would take a tenth of a proof.
+  using Radius = decltype(place_ahead_.radius());
+  Radius widest_ = 0, least_gap_ = std::numeric_limits<Radius>::infinity(), widest_of_gap_ = 0, gap_of_widest_ = 1;
+  long double of_gap_ = -1;  // the largest radius of a gap against the gap
 };
 
 }  // namespace cradle

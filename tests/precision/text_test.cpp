@@ -5,13 +5,18 @@
 
 #include <gtest/gtest.h>
 
+#include <boost/multiprecision/cpp_bin_float.hpp>
+#include <cmath>
 #include <random>
+#include <string>
 
 #include "cradle/tests/precision/every_scalar.hpp"
 #include "cradle/tests/precision/reference.hpp"
 #include "cradle/tests/texts.hpp"
 
 namespace cradle::test::text_test {
+
+namespace bm = boost::multiprecision;
 
 template <class P> using EveryText = InPrecision<P>;
 TYPED_TEST_SUITE(EveryText, EveryPrecision, PrecisionName);
@@ -164,6 +169,42 @@ TEST(DoubleDoubleText, PartsFarApartComeBack) {
   for (int exponent = -53; exponent >= -1074; exponent -= 7)
     expect_round_trip(double_double::sum(1, -std::ldexp(1, exponent)));
   expect_round_trip(double_double::sum(0x1.fffffffffffffp1023, 0x1p-1074));
+}
+
+// Most numbers are converted in fixed point (fixed_point.hpp): to the same texts, and back, as in numbers that hold any
+// sum of two doubles. Few digits, middles, neighbours of integers and of powers of two, and sizes at both ends of what
+// fixed point holds decide most there.
+TEST(DoubleDoubleText, IsThatOfWideNumbers) {
+  using Wide = bm::number<bm::cpp_bin_float<2200, bm::digit_base_2>, bm::et_off>;
+  const auto rounded = [](const Wide& x) {
+    const auto high = static_cast<double>(x);
+    return double_double::sum(high, static_cast<double>(Wide(x - high)));
+  };
+  std::mt19937_64 random(22);
+  const auto part = [&] { return static_cast<double>(random() >> 11) * 0x1p-53; };
+  for (int k = 0; k < 4000; ++k) {
+    const int power = static_cast<int>(random() % 420) - 350;
+    const double odd = std::ldexp(static_cast<double>(random() % 1000), power), any = std::ldexp(part(), power);
+    const double_double numbers[] = {double_double(odd), double_double::sum(std::ldexp(1, power), any * 0x1p-60),
+                                     double_double::sum(any, -any * part() * 0x1p-53),
+                                     double_double::sum(std::floor(part() * 1e6), -part() * std::ldexp(1, power % 90))};
+    // The first one's last digit is the least subnormal double.
+    const double_double x = k == 0      ? double_double(0x1.1321f897fbbfp-277)
+                            : k % 8 < 4 ? numbers[k % 4]
+                                        : -numbers[k % 4];
+    const Wide wide = Wide(x.high()) + x.low();
+    int digits = 32;
+    while (rounded(Wide(wide.str(digits))) != x) digits += 8;
+    const std::string text = to_text(x);
+    EXPECT_EQ(text, wide.str(digits));
+    // And of decimals near it, and just beyond the middle between two doubles.
+    std::string other = text.substr(0, text.find('e'));
+    other[other.size() - 1 - random() % (other.size() / 2 + 1)] = static_cast<char>('0' + random() % 10);
+    const double middle = std::ldexp(1 + std::floor(part() * 0x1p52) * 0x1p-52, power / 8);
+    for (const std::string& literal :
+         {other + "e" + std::to_string(power / 3), Wide(Wide(middle) + std::ldexp(1, power / 8 - 53)).str(90) + "1"})
+      EXPECT_EQ(from_text<double_double>(literal), rounded(Wide(literal))) << literal;
+  }
 }
 
 }  // namespace cradle::test::text_test

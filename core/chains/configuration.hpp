@@ -31,6 +31,11 @@ template <Real T> struct Configuration {
   std::optional<T> closure_gap, closure_speed;
   // Whether velocities are sums of closing speeds, so that the rounding errors of all of them add up.
   bool speeds_are_sums = false;
+
+  void reserve(std::size_t n) {
+    index.reserve(n);
+    for (auto* values : {&x, &v, &m, &gap, &closing_speed}) values->reserve(n);
+  }
 };
 
 // Removes walls, which chains number -1 and `count` (wall.hpp), and the gaps to them.

@@ -171,6 +171,8 @@ template <Real T, class Masses> class GapPlaces : public HeldGaps<T, Masses> {
     CompensatedSum<T> way, slowing, moment, momentum;
     std::vector<T> ways;
     std::vector<Pair<T>> slowings;  // from particle 0 to each one
+    const auto n = static_cast<std::size_t>(particles_->count());
+    c.reserve(n), ways.reserve(n), slowings.reserve(n);
     std::size_t heaviest = 0;
     for (Slot s = first(); s <= last(); ++s) {
       c.index.push_back(particle(s));
@@ -211,6 +213,7 @@ template <Real T, class Masses> class GapPlaces : public HeldGaps<T, Masses> {
     const auto n = static_cast<std::size_t>(to + 2 - from);
 
     Configuration<T> c;
+    c.reserve(n);
     c.time = clock().time(time);
     c.speeds_are_sums = !line_.exact_sums();
     for (Slot s = from; s <= to + 1; ++s) {
@@ -223,6 +226,7 @@ template <Real T, class Masses> class GapPlaces : public HeldGaps<T, Masses> {
     CompensatedSum<T> way, slowing;
     std::vector<T> ways{T(0)};
     std::vector<Pair<T>> slowings{{}};  // from the left anchor to each particle
+    ways.reserve(n), slowings.reserve(n);
     for (Slot s = from; s <= to; ++s) {
       c.gap.push_back(gap_at(s, time));
       c.closing_speed.push_back(closing_at(s, time));

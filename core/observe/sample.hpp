@@ -26,8 +26,9 @@ template <Real T> struct Sample {
   T energy_lost{0};  // since the start, in collisions of particles and in walls
   T given{0};        // by walls, since the start
   Counts counts;
-  ParticleIndex particles = 0;               // in the active zone, between the outermost two that have collided
-  std::optional<T> front_left, front_right;  // positions of these two; none before the first collision, nor on a ring
+  ParticleIndex particles = 0;  // in the active zone, between the outermost two that have collided
+  // Positions of these two; none before the first collision, nor on a ring.
+  std::optional<T> front_left = {}, front_right = {};
   WallTallies<T> walls = {};
 };
 
@@ -38,26 +39,22 @@ template <class Run, Real T = typename Run::Scalar> WallTallies<T> wall_tallies(
   else
     return {};
 }
-// Kinetic energy of all particles of the scene, after the collisions made until now. That of particles that fall is a
-// sum over them at the given time, since the ledger has potential energy too.
-template <class Run, Real T = typename Run::Scalar>
-T energy_now(const Run& run, const T& initial_energy, const T& time) {
-  if (run.falls()) return run.kinetic_energy(time);
-  const T left = initial_energy - run.energy_lost(time);
-  bool by_walls = false;
-  for (const WallTally<T>& wall : wall_tallies(run, time))
-    by_walls = by_walls || !(wall.given.value() == T(0) && wall.dissipated.value() == T(0));
-  return T(left + left) < initial_energy || by_walls ? T(run.kinetic_energy(time)) : left;
-}
 
 // A sample of a Simulation or a StickyGas. `time` must be between the last collision and the time advanced to.
 template <class Run, Real T = typename Run::Scalar>
 Sample<T> sample(const Run& run, const T& initial_energy, const T& time) {
   const WallTallies<T> walls = wall_tallies(run, time);
-  const T lost = run.energy_lost(time), given = given_by(walls);
-  Sample<T> s{
-      time, energy_now(run, initial_energy, time), lost + given, given, run.counts(), run.collided_particles(), {}, {},
-      walls};
+  const T lost = run.energy_lost(time), given = given_by(walls), left = initial_energy - lost;
+  // The ledger of particles that fall has potential energy too.
+  bool summed = run.falls() || T(left + left) < initial_energy;
+  for (const WallTally<T>& wall : walls) summed |= !(wall.given.value() == T(0) && wall.dissipated.value() == T(0));
+  Sample<T> s{.time = time,
+              .energy = summed ? T(run.kinetic_energy(time)) : left,
+              .energy_lost = lost + given,
+              .given = given,
+              .counts = run.counts(),
+              .particles = run.collided_particles(),
+              .walls = walls};
   if (s.particles > 0 && !run.on_ring()) {
     s.front_left = run.front_left(time);
     s.front_right = run.front_right(time);

@@ -211,7 +211,7 @@ template <WallAt WallPair::*Wall> std::vector<Field> wall_fields(std::string_vie
 }
 
 // key, member, unit, default, range, applies when, documentation
-const Field fields_before_walls[] = {
+const Field fields_before_particles[] = {
     {"title", member<&Scene::title>, "", "\"\"", "", &always, "what the scene shows; printed on pictures"},
 
     {"law.type", law_type, "", "required", law_names, &always, "what happens at a collision"},
@@ -244,11 +244,8 @@ const Field fields_before_walls[] = {
      "velocity of the particle between the rows"},
     {"initial.particles", initial_of<&Initial::particles>, "", "8000", "[2, 1e15] even", &plain_rows,
      "particles of both rows together; the first ones start at plus and minus half the spacing"},
-    {"initial.particles", initial_of<&Initial::particles>, "", "8000", "[1, 1e15]", &ring, "particles on the ring"},
-    {"initial.particles", initial_of<&Initial::particles>, "", "8000", "[2, 1e15]", &cold,
-     "particles of the gas, those that move included"},
-    {"initial.particles", initial_of<&Initial::particles>, "", "8000", "[1, 2147483647]", &gas,
-     "particles between the two walls"},
+};
+const Field fields_before_walls[] = {
     {"initial.density", initial_of<&Initial::density>, "1/l", "", "(0, inf)", &gas,
      "particles per length, 1 if nothing says it: gives walls.right.position, from that of the left wall on"},
     {"initial.hot", initial_of<&Initial::hot>, "", "1", "[1, initial.particles]", &cold,
@@ -456,10 +453,24 @@ const Field fields_after_walls[] = {
     {"sweep.replicas", sweep_of<&Sweep::replicas>, "", "1", "[1, 1e15]", &always, "replicas of every point of a sweep"},
 };
 
+// Of the initial states whose row says how many particles there can be.
+template <std::size_t... K> std::vector<Field> number_of_particles(std::index_sequence<K...>) {
+  static const std::string texts[] = {fmt::format("initial.type = \"{}\"", initial_rows[K].name)...};
+  static const When states[] = {{other_state, "initial.type", texts[K], begins_as<initial_rows[K].type>}...};
+  std::vector<Field> all;
+  for (const auto& [row, state] : {std::pair(initial_rows[K], &states[K])...})
+    if (!row.particles.empty())
+      all.push_back(
+          {"initial.particles", initial_of<&Initial::particles>, "", "8000", row.particles, state, row.of_particles});
+  return all;
+}
+
 std::vector<Field> joined() {
   std::vector<Field> all;
   for (const std::vector<Field>& some :
-       {std::vector<Field>(std::begin(fields_before_walls), std::end(fields_before_walls)),
+       {std::vector<Field>(std::begin(fields_before_particles), std::end(fields_before_particles)),
+        number_of_particles(std::make_index_sequence<std::size(initial_rows)>()),
+        std::vector<Field>(std::begin(fields_before_walls), std::end(fields_before_walls)),
         wall_fields<&WallPair::left>("left", {"walls.left.position", walls_of<&WallPair::left, &WallAt::position>, "l",
                                               "0", any, &gas, "where the gas begins: the left one of its two walls"}),
         wall_fields<&WallPair::right>("right", {"walls.right.position", walls_of<&WallPair::right, &WallAt::position>,

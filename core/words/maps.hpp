@@ -13,17 +13,12 @@
 #include <cstddef>
 #include <vector>
 
+#include "cradle/core/base/planted_error.hpp"
 #include "cradle/core/base/real.hpp"
 #include "cradle/core/words/linear.hpp"
 #include "cradle/core/words/word.hpp"
 
 namespace cradle::words {
-
-#ifndef CRADLE_PLANTED_ERROR
-#define CRADLE_PLANTED_ERROR 0
-#endif
-// Errors that the tests plant, to see that they are found.
-constexpr bool planted(int error) { return error == CRADLE_PLANTED_ERROR; }
 
 struct Walls {
   bool left = false, right = false;

@@ -6,6 +6,7 @@
 #include <hwy/foreach_target.h>  // before highway.h
 #include <hwy/highway.h>
 
+#include "cradle/core/base/planted_error.hpp"
 #include "cradle/core/parallel/steps/loop.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -14,12 +15,9 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Tests plant errors: no radius, no check, a mask of the wrong lane, no bounds of tiles, collisions left out that a
+// Errors that are planted: no radius, no check, a mask of the wrong lane, no bounds of tiles, collisions left out that a
 // step leaves to the next.
-#ifndef CRADLE_PLANTED_ERROR
-#define CRADLE_PLANTED_ERROR 0
-#endif
-constexpr bool planted(int error) { return error == CRADLE_PLANTED_ERROR; }
+using cradle::planted;
 
 using Lanes = hn::ScalableTag<double>;  // of neighbours that are compared
 constexpr std::size_t lanes = hn::MaxLanes(Lanes());

@@ -15,8 +15,8 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Errors that are planted: no radius, no check, a mask of the wrong lane, no bounds of tiles, collisions left out that a
-// step leaves to the next.
+// Errors that are planted: no radius, no check, a mask of the wrong lane, no bounds of tiles, collisions left out that
+// a step leaves to the next.
 using cradle::planted;
 
 using Lanes = hn::ScalableTag<double>;  // of neighbours that are compared

@@ -12,23 +12,23 @@ namespace cradle::tools {
 
 namespace {
 
-Error lacking(const std::string& file, const std::string& what) {
+Error lacking(const std::string& file, std::string_view what) {
   return {{file, 0, ""},
           "not an ensemble, or a damaged one",
-          "no " + what,
+          fmt::format("no {}", what),
           "give a file that `cradle ensemble` or `cradle merge` wrote",
           Exit::io};
 }
 
-const Group& get(const Result& result, const std::string& name, const std::string& file) {
+const Group& get(const Result& result, std::string_view name, const std::string& file) {
   if (const Group* group = result.find(name)) return *group;
   throw lacking(file, name);
 }
 
-template <class T> const std::vector<T>& get(const Group& group, const std::string& name, const std::string& file) {
+template <class T> const std::vector<T>& get(const Group& group, std::string_view name, const std::string& file) {
   if (const Column* column = group.find(name))
     if (const auto* values = std::get_if<std::vector<T>>(&column->values)) return *values;
-  throw lacking(file, group.name + "/" + name);
+  throw lacking(file, fmt::format("{}/{}", group.name, name));
 }
 
 std::string node_name(std::size_t k) { return fmt::format("ensemble/nodes/{:04}", k); }

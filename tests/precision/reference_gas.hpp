@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <limits>
@@ -19,6 +20,8 @@
 #include "cradle/tests/core/rational.hpp"
 
 namespace cradle::test {
+
+using std::exp, std::pow, std::sqrt;  // of long double; those of wider numbers are found by their types
 
 enum class GasLaw { inelastic, contact_time, merging, sticky, wet };
 

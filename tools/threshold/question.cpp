@@ -20,12 +20,12 @@ Error wrong(const std::string& what, const std::string& found, const std::string
   return Error({"", 0, "--vary"}, what, found, advice);
 }
 
-const Field& field_of(const std::string& key, const Scene& scene) {
+const Field& field_of(std::string_view key, const Scene& scene) {
   if (const Field* field = find_field(key, scene)) return *field;
   std::vector<std::string_view> keys;
   for (const Field& field : scene_fields()) keys.push_back(field.key);
   const auto nearest = nearest_word(key, keys);
-  throw wrong("no such key", key,
+  throw wrong("no such key", std::string(key),
               nearest.empty() ? "`cradle scenes --keys` lists them" : fmt::format("did you mean {}?", nearest));
 }
 

@@ -4,6 +4,7 @@
 // a streamed row, a full row and a single replica start identically.
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 
 namespace cradle {
@@ -29,10 +30,37 @@ constexpr std::uint64_t random_bits(std::uint64_t seed, std::uint64_t replica, s
   return words[0] | std::uint64_t{words[1]} << 32;
 }
 
+// The finaliser of splitmix64: a number whose bits depend on all bits of z.
+constexpr std::uint64_t splitmix64(std::uint64_t z) {
+  z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9;
+  z = (z ^ (z >> 27)) * 0x94D049BB133111EB;
+  return z ^ (z >> 31);
+}
+
 // Uniform integer in [-bound, bound], 0 <= bound < 2^31. Relative errors of probabilities are at most 2^-32.
 constexpr std::int64_t uniform_integer(std::uint64_t bits, std::int64_t bound) {
   const auto range = static_cast<std::uint64_t>(2 * bound + 1);
   return static_cast<std::int64_t>(((bits >> 32) * range + (((bits & 0xFFFFFFFF) * range) >> 32)) >> 32) - bound;
+}
+
+namespace detail {
+
+// ln x for 0 < x <= 1, by the four operations alone: a library's logarithm differs between machines in the last bit.
+inline double portable_log(double x) {
+  int exponent = 0;
+  double mantissa = std::frexp(x, &exponent);
+  if (mantissa < 0.70710678118654752) mantissa *= 2, --exponent;
+  const double s = (mantissa - 1) / (mantissa + 1), square = s * s;  // ln m = 2 artanh s, |s| < 0.172
+  double sum = 0;
+  for (int k = 23; k > 0; k -= 2) sum = sum * square + 1.0 / k;
+  return 2 * s * sum + exponent * 0.693147180559945309;
+}
+
+}  // namespace detail
+
+// An exponential number of mean 1 from 52 of the bits.
+inline double exponential(std::uint64_t bits) {
+  return -detail::portable_log((static_cast<double>(bits >> 12) + 0.5) * 0x1p-52);
 }
 
 }  // namespace cradle

@@ -29,6 +29,8 @@
 #include <variant>
 #include <vector>
 
+#include "cradle/core/base/require.hpp"
+
 namespace cradle {
 
 static_assert(std::endian::native == std::endian::little);
@@ -250,8 +252,7 @@ template <class X> std::string state_shape() {
 
 // For `loaded`: throws if fields contradict each other.
 inline void require_state(bool holds, const char* what) {
-  if (!holds)
-    throw std::invalid_argument(std::string("a state that cannot be (") + what + "): take the file from a copy");
+  require(holds, "a state that cannot be (", what, "): take the file from a copy");
 }
 
 }  // namespace cradle

@@ -10,14 +10,8 @@
 //
 // At a floor, p > 0, the other root is before g; at a ceiling, p < 0, it comes after this one, where the gap opens.
 //
-// To a ceiling the gap is convex, so that its ends do not say that it stays open (checker.hpp). It does from a positive
-// gap on for the time t, if one of these is certain:
-//
-//   w <= 0                  it only grows
-//   w(t) > 0, g(t) > 0      it only shrinks
-//   D < 0                   it has no root: its least value is D/(2 p) > 0
-//
-// There is no other way for the gap to stay open: D >= 0 with w > 0 >= w(t) is a collision that is missing, or a touch.
+// To a ceiling the gap is convex: README.md (Gravity) has the three cases in which it stays open. There is no other
+// way: D >= 0 with w > 0 >= w(t) is a collision that is missing, or a touch.
 
 #include <optional>
 

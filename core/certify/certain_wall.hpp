@@ -1,15 +1,7 @@
 #pragma once
-// A wall (laws/wall.hpp) changes a particle as follows, where all numbers are enclosed. The wall's world line is (A,
-// V), that of the particle (a, v), the closing speed w > 0. A reflecting wall is a particle of infinite mass:
-//
-//   (a, v)' = (a, v) - (1 + r) ((a, v) - (A, V)),
-//
-// linear, no mass in it: the radius of (a, v)' is r times that of (a, v), and (1 + r) times that of the wall. From a
-// thermal wall the particle comes at a random speed s, whatever w was: v' = V + s from the left wall, V - s from the
-// right one, through the place where they met. This s is a double, of the double next to the particle's mass, by
-// definition and so exact; the place of the collision is not, since its time is divided by w.
-//
-// The accounts of walls: see laws/wall.hpp.
+// What a wall (laws/wall.hpp, which has the accounts too) makes of a particle, where all numbers are enclosed.
+// README.md (Walls) has the maps. The random speed of a thermal wall is a double, of the double next to the particle's
+// mass, by definition and so exact.
 
 #include <array>
 #include <cmath>

@@ -10,22 +10,10 @@
 //   (a, v)_l' = (a, v)_l - c_l ((a, v)_l - (a, v)_r),   (a, v)_r' = (a, v)_r + c_r ((a, v)_l - (a, v)_r),
 //
 // c_l = J/(m_l w), c_r = J/(m_r w): one linear map for places and velocities, since both lines go through the same
-// point. The time T does not enter. For identical particles c = (1 + eps)/2: the matrix is doubly stochastic, radii are
-// averaged and only roundings add to them. Merging is an average too.
+// point. The time T does not enter.
 //
-// At the start it is checked that every gap is certainly positive. At each collision of l and r these are checked:
-//   1. they are neighbours;
-//   2. w > 0 certainly;
-//   3. T is certainly later than the last collision of either of them;
-//   4. w is certainly on one side of every threshold of the law;
-//   5. under gravity, a particle beside the ceiling has not met it since its last collision.
-// At a time t to which the run is to be proved it is checked that every gap is certainly positive then, that the last
-// collision of every particle is certainly earlier, and 5.
-//
-// Theorem. If all of this holds, these world lines are the motion of the exact system up to t, it has made exactly
-// these collisions, and every place and velocity lies in its ball.
-//
-// README.md has the proof, also for walls, under gravity and for particles that merge or pass.
+// README.md says what is checked at the start, at each collision and at a time to which the run is to be proved, and
+// proves that this is enough: also for walls, under gravity and for particles that merge or pass.
 
 #include <algorithm>
 #include <memory>

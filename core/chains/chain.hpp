@@ -9,8 +9,6 @@
 
 #include <concepts>
 #include <cstddef>
-#include <stdexcept>
-#include <string>
 
 #include "cradle/core/chains/collision_result.hpp"
 #include "cradle/core/chains/configuration.hpp"
@@ -79,9 +77,8 @@ template <Chain C> typename C::Scalar smallest_gap(const C& chain) {
   T least = far_away<T>();
   for (Slot s = chain.first(); s <= chain.last(); ++s) {
     const T gap = chain.gap_at(s, start);
-    if (!is_finite(gap) || !is_finite(T(chain.closing(s))))
-      throw std::invalid_argument("the distance or closing speed of particles " + std::to_string(chain.particle(s)) +
-                                  " and the next is not finite: check their positions and velocities");
+    require(is_finite(gap) && is_finite(T(chain.closing(s))), "the distance or closing speed of particles ",
+            chain.particle(s), " and the next is not finite: check their positions and velocities");
     if (gap < least) least = gap;
   }
   return least;

@@ -2,10 +2,9 @@
 // The line of cells of a chain in gaps and particle velocities, and the effect of a collision on it. The chain
 // (cluster_chain.hpp) or a segment, which is a copy of a part (cluster_segment.hpp), handles its ends.
 //
-// A cell holds a particle and the gap between it and the next one (timed_gaps.hpp). Cells are linked from left to
-// right. When two particles merge, the result stays in the left one's cell, and the right one's is vacated: links pass
-// over it until the chain is laid out anew. Particles that pass exchange cells, so that cells stay in the order of the
-// line.
+// A cell holds a particle and the gap between it and the next one (timed_gaps.hpp); README.md (ClusterChain) says what
+// becomes of cells where particles merge or pass. When two merge, the result stays in the left one's cell, and the
+// right one's is vacant until the chain is laid out anew.
 
 #include <tuple>
 #include <utility>

@@ -18,12 +18,7 @@
 // active zone, whose flight is known (anchor.hpp). On a ring the gap after the last slot is the first one; there
 // positions come from the centre of mass, velocities from the total momentum.
 //
-// A pile. A particle that meets one at rest on a wall more slowly than the wall's rest speed stays on it: to it, what
-// rests is the wall, which also takes its impulse. So k particles rest, one on the other, all gaps below the k-th 0
-// and closed, and the gap above them is one to the wall (gravity.hpp). A faster one collides with the topmost by the
-// law; this one then is not at rest, but pushed into those below, which it meets at the same time, and so on down to
-// the wall. All are let go at the same time. The pile is dissolved by the next collision beside it: in gaps nothing
-// happens before. One that sits on the wall again is a new one.
+// Several particles that rest on a wall, one on the other, are a pile: README.md (Piles) says what they do.
 
 #include <algorithm>
 #include <memory>

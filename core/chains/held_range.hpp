@@ -1,7 +1,6 @@
 #pragma once
-// `HeldRange` says how much of a line a chain holds, and how far collisions have spread in it. Rows are streamed:
-// particles within a row never meet, so a chain holds only the particle of each row that is next to the front; the
-// collision that hits it takes in the next one. From left to right:
+// `HeldRange` says how much of a line a chain holds, and how far collisions have spread in it. Rows are streamed
+// (README.md). From left to right:
 //
 //   unheld particles | first ... left front ~~~ collisions ~~~ right front ... last | unheld particles
 //

@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <stdexcept>
-#include <string>
 #include <tuple>
 #include <vector>
 
@@ -22,9 +20,8 @@ template <Real T> struct IdenticalMasses {
     if (particles.identical_masses()) return;
     ParticleIndex other = 1;
     while (other + 1 < particles.count() && particles.mass(other) == mass) ++other;
-    throw std::invalid_argument("unequal masses in a chain for identical ones (particle 0 has " + in_message(mass) +
-                                ", particle " + std::to_string(other) + " has " + in_message(particles.mass(other)) +
-                                "): use GapChain<T, IndividualMasses<T>>");
+    require(false, "unequal masses in a chain for identical ones (particle 0 has ", mass, ", particle ", other, " has ",
+            particles.mass(other), "): use GapChain<T, IndividualMasses<T>>");
   }
   T mass, reduced_mass;
   static std::tuple<> state(auto&) { return {}; }

@@ -36,19 +36,16 @@ template <Real T> class PositionChain {
         lost_(particles->energy_to_lose()) {
     require_particles(*particles, start);
     if (std::numeric_limits<T>::is_exact) require_no_gravity(*particles, "use a type that has square roots");
-    if (particles->on_ring())
-      throw std::invalid_argument("a ring in absolute positions (circumference " +
-                                  in_message(particles->circumference()) + "): use a chain in gaps");
+    require(!particles->on_ring(), "a ring in absolute positions (circumference ", particles->circumference(),
+            "): use a chain in gaps");
     for (ParticleIndex b = first_particle_; b <= particles->gaps().last + 1; ++b)
       particles_.push_back({particles->position(b), particles->velocity(b), start, particles->mass(b)});
     for (Slot s = first(); s <= last(); ++s)
-      if (!(at(s).x < at(s + 1).x))
-        throw std::invalid_argument("particles " + std::to_string(particle(s)) + " and " +
-                                    std::to_string(particle(s) + 1) + " have the same place in absolute positions (" +
-                                    in_message(at(s).x) + "): use a chain in gaps, or more digits");
+      require(at(s).x < at(s + 1).x, "particles ", particle(s), " and ", particle(s) + 1,
+              " have the same place in absolute positions (", at(s).x, "): use a chain in gaps, or more digits");
     if (const Wall<T>* wall = particles->holding())
-      throw std::invalid_argument("a particle that rests on a wall in absolute positions (rest speed " +
-                                  in_message(wall->rest_speed) + "): use a chain in gaps");
+      require(false, "a particle that rests on a wall in absolute positions (rest speed ", wall->rest_speed,
+              "): use a chain in gaps");
     fall_.assign(particles_.size(), T(0));
     if (falls())
       for (ParticleIndex b = 0; b < count(); ++b) fall_[slot_of(b) - 2] = field_.acceleration();
@@ -86,7 +83,6 @@ template <Real T> class PositionChain {
 
   // At the next collision; of a gap to a wall under gravity without one, negative.
   const T& closing(Slot s) const { return closing_[s]; }
-  T closing_when_due(Slot s) const { return closing_[s]; }
 
   template <class Law> CollisionResult<T> collide(const Law& law, Slot s, const T& time) requires(Law::bounces_only) {
     Particle &left = at(s), &right = at(s + 1);

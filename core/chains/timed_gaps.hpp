@@ -7,10 +7,7 @@
 //   brought to t    g -= w (t - local time), local time = t
 //   in collision    g = 0 exactly
 //
-// Collisions may come late (README.md): a collision beside a gap may be earlier than the gap's local time, which never
-// decreases. The gain in closing speed has acted since then, g += gain (t - local time) with t before the local time;
-// and a late collision at the gap itself leaves it as open as it has become since then. If the order was truly lost,
-// the gap becomes negative and is counted.
+// Collisions may come late, before the gap's local time: README.md (Late collisions) says what becomes of it then.
 //
 // When the origin moves, a local time is rounded. The rounding error is kept (`lag`; the true local time is the sum of
 // both), so that a move changes no gap. A lag is nonzero only if the local time is negative, and is read only then.

@@ -1,14 +1,9 @@
 #pragma once
 // The cell of a gap in a chain of gaps and closing speeds, with the additional data of watched masses (masses.hpp).
 //
-// Exact sums, where masses are far apart. A collision with a particle of 1/M of its mass changes a heavy particle's
-// velocity by 2/M of the light one's. Both velocities are in one closing speed, of the size of the light one's:
-// rounding it loses the kick, no other number holds the heavy particle's velocity, and the losses add up. So the rest
-// that rounding leaves of a closing speed is kept, w = closing + rest, with twice the digits. A collision gives to the
-// neighbours exactly what it takes from its own closing speed (gap_line.hpp). Hence the velocity of every particle is
-// its initial velocity plus all its kicks, each rounded to its own digits, whatever the masses of the others:
-//
-//   |dv_i| <= 2 epsilon (sum of the magnitudes of its own kicks).
+// Exact sums, where masses are far apart (README.md, Masses far apart): the rest that rounding leaves of a closing
+// speed is kept, w = closing + rest, with twice the digits, and a collision gives to the neighbours exactly what it
+// takes from its own closing speed (gap_line.hpp).
 //
 // Deviations. Where particles nearly collapse and come apart again, errors grow by as many digits as gaps shrink, until
 // they decide which collision is next. So two samples of how far a gap and its closing speed may be from those of the
@@ -46,8 +41,9 @@
 #include <cstdint>
 #include <tuple>
 
+#include "cradle/core/base/counter_rng.hpp"
 #include "cradle/core/base/real.hpp"
-#include "cradle/core/chains/timed_gap.hpp"
+#include "cradle/core/chains/timed_cells.hpp"
 #include "cradle/core/initial/particles.hpp"
 
 namespace cradle {
@@ -109,25 +105,20 @@ template <Real T> struct WatchedGap : Gap<T> {
 template <Real N> class Roundings {
  public:
   N next() {
-    if (left_ == 0) bits_ = mixed(counter_ += step), left_ = 8;
+    if (left_ == 0) bits_ = splitmix64(counter_ += step), left_ = 8;
     --left_;
     const N value = N(static_cast<int>(2 * (bits_ & 0xFF)) - 255) / N(256);
     bits_ >>= 8;
     return value;
   }
   static N of(double number, std::size_t sample) {
-    const std::uint64_t bits = mixed(std::bit_cast<std::uint64_t>(number) + sample * step) >> 11;
+    const std::uint64_t bits = splitmix64(std::bit_cast<std::uint64_t>(number) + sample * step) >> 11;
     return N(static_cast<std::int64_t>(bits)) / N(std::int64_t{1} << 52) - N(1);
   }
   static auto state(auto& self) { return std::tie(self.counter_, self.bits_, self.left_); }
 
  private:
   static constexpr std::uint64_t step = 0x9E3779B97F4A7C15;
-  static std::uint64_t mixed(std::uint64_t z) {  // the finaliser of splitmix64
-    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9;
-    z = (z ^ (z >> 27)) * 0x94D049BB133111EB;
-    return z ^ (z >> 31);
-  }
   std::uint64_t counter_ = 0, bits_ = 0, left_ = 0;
 };
 

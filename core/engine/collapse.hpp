@@ -5,15 +5,9 @@
 //   cutoff   collisions below the law's velocity cut-off are elastic (as in the paper; nothing is done here)
 //   stop     exact dynamics; stop when the collapse time is known, or when a gap is below a given size
 //
-// A collapse is settled if two neighbouring gaps are proved to collapse: by the closed form of their collisions
-// (two_gaps.hpp), with bounds on rounding errors, and with all other particles too far away to arrive in time. From
-// then on the run follows them until the time left is less than the chain's resolution, or a gap is about to underflow,
-// or `most_followed` collisions are made. Without such a proof no collapse time is reported.
-//
-// Collapses of many particles are not of this form (README.md, What is not proved). More than `few` particles in gaps
-// stop where a gap beside a collision is below 2^-100 of what the gap of the collision was at the start, unless the
-// collapse there is proved. This is no proof: they may still part. Gaps shrink by 2^60 and more before particles that
-// are squeezed between clusters part.
+// README.md (Collapse) says when a collapse is settled, that is proved, how far it is then followed, and where more
+// than `few` particles stop without a proof. (Gaps shrink by 2^60 and more before particles that are squeezed between
+// clusters part.)
 
 #include <algorithm>
 #include <cstdint>

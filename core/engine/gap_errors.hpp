@@ -1,10 +1,7 @@
 #pragma once
 // Bounds on what rounding has done to the gaps and closing speeds of a few particles, from the history of their
-// collisions (README.md, Bounds on rounding).
-//
-// As lines in time, G(t) = g - w t, gaps obey linear maps: a collision at i turns G_i into -r G_i and adds c G_i to the
-// line of each neighbour, whenever it comes. Errors obey exactly the same maps, and their bounds obey the maps with the
-// magnitudes r, 1 and c. The rounding of each operation of a collision is added where it happens.
+// collisions: README.md (Bounds on rounding) has the maps that they obey. The rounding of each operation of a collision
+// is added where it happens.
 
 #include <limits>
 #include <tuple>

@@ -17,7 +17,7 @@
 #include <tuple>
 
 #include "cradle/core/base/real.hpp"
-#include "cradle/core/chains/notice.hpp"
+#include "cradle/core/chains/collision_result.hpp"
 
 namespace cradle {
 

@@ -1,11 +1,8 @@
 #pragma once
 // `Standstill` detects that time does not advance. Many particles may meet at one time and place: n(n - 1)/2 collisions
 // if they are elastic. If more collisions follow at the same time, the scalar type cannot distinguish their times, or
-// they never end: the collisions of very inelastic particles continue until their speeds underflow.
-//
-// A law with a threshold ends them (README.md), but late: very inelastic particles in touch even out their
-// speeds, from w to the cut-off delta, in up to n^2 w/(2 delta) collisions, each of which must wait for those on its
-// left.
+// they never end: the collisions of very inelastic particles continue until their speeds underflow. A law with a
+// threshold ends them, but late (README.md, When a type resolves no more).
 //
 // Offsets from a moving origin distinguish times as long as the exponents of the type suffice, possibly for ever. So
 // there is a second bound, the same in every type and for every policy: on the collisions at one rounded time since the

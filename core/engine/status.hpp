@@ -6,7 +6,6 @@
 #include <functional>
 #include <limits>
 #include <optional>
-#include <stdexcept>
 #include <tuple>
 
 #include "cradle/core/engine/collapse.hpp"
@@ -75,13 +74,9 @@ template <Real T> struct Policy {
 
 // Throws std::invalid_argument for a time that a run cannot advance to.
 template <Real T> void require_ahead(const T& until, const T& last_collision) {
-  if (!is_finite(until))
-    throw std::invalid_argument("the time to advance to is not finite (found " + in_message(until) +
-                                "): give a number");
-  if (until < last_collision)
-    throw std::invalid_argument("the time to advance to is in the past (found " + in_message(until) +
-                                ", the last collision was at " + in_message(last_collision) +
-                                "): a run goes forward only");
+  require(is_finite(until), "the time to advance to is not finite (found ", until, "): give a number");
+  require(!(until < last_collision), "the time to advance to is in the past (found ", until,
+          ", the last collision was at ", last_collision, "): a run goes forward only");
 }
 
 }  // namespace cradle

@@ -9,13 +9,11 @@
 // spacings are doubles, by definition: each scalar type starts from the same ones.
 //
 // Only the gaps beside hot particles are held at the start; particles at rest are taken in as the fronts reach them
-// (held_range.hpp). Velocities are integers minus the velocity of their centre of mass, times a unit that gives them
-// their energy: all scalar types start from the same state, which each type rounds.
+// (held_range.hpp). Velocities are whole numbers (README.md) minus the velocity of their centre of mass, times a unit
+// that gives them their energy.
 
 #include <cstdint>
 #include <memory>
-#include <stdexcept>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -61,13 +59,9 @@ template <Real T>
 HotParticles<T> heated(ParticleIndex first, ParticleIndex count, const T& energy, const MassPattern<T>& masses,
                        std::uint64_t seed, std::uint64_t replica) {
   using std::sqrt;
-  if (count < 2)
-    throw std::invalid_argument("random velocities of " + std::to_string(count) +
-                                " particles without momentum: give it two or more, or a kick");
+  require(count >= 2, "random velocities of ", count, " particles without momentum: give it two or more, or a kick");
   require_finite(energy, "energy of the hot particles");
-  if (!(energy > T(0)))
-    throw std::invalid_argument("energy of the hot particles is not positive (" + in_message(energy) +
-                                "): give a positive one");
+  require(energy > T(0), "energy of the hot particles is not positive (", energy, "): give a positive one");
   HotParticles<T> hot{first, {}, T(0), T(1)};
   const VelocityDraw draw = gaussian_velocity(seed, replica);
   CompensatedSum<T> momentum, twice;
@@ -95,24 +89,19 @@ template <Real T> class Cold final : public OnLattice<T> {
        MassPattern<T> masses = {}, double falls = 0)
       : OnLattice<T>(count, T(spacing / T(displacement_unit)), std::move(displacement), std::move(masses)),
         left_(place == HotPlace::left), hot_(std::move(hot)), spacing_(spacing), falls_(falls) {
-    if (hot_.count() < 1 || hot_.first < 0 || hot_.end() > count)
-      throw std::invalid_argument("hot particles " + std::to_string(hot_.first) + " to " +
-                                  std::to_string(hot_.end() - 1) + " of " + std::to_string(count) +
-                                  ": give at least one, and no more than there are");
+    require(hot_.count() >= 1 && hot_.first >= 0 && hot_.end() <= count, "hot particles ", hot_.first, " to ",
+            hot_.end() - 1, " of ", count, ": give at least one, and no more than there are");
     require_finite(spacing, "spacing of the particles");
-    if (!(spacing > T(0)))
-      throw std::invalid_argument("spacing is not positive (" + in_message(spacing) + "): give a positive number");
-    if (!(falls < 1))
-      throw std::invalid_argument("a density that falls with the power " + std::to_string(falls) +
-                                  " of the distance: give a number below 1");
+    require(spacing > T(0), "spacing is not positive (", spacing, "): give a positive number");
+    require(falls < 1, "a density that falls with the power ", falls, " of the distance: give a number below 1");
     if (falls != 0) {
       power_ = std::make_shared<const Power<double>>(1 / (1 - falls));
       for (const ParticleIndex end : {ParticleIndex{0}, count - 1})
-        require_finite(position(end), "position of particle " + std::to_string(end));
+        require_finite(position(end), "position of particle ", end);
       if (count > 1) gap(0), gap(count - 2);
     }
     for (ParticleIndex particle = hot_.first; particle < hot_.end(); ++particle)
-      require_finite(hot_.velocity(particle), "velocity of particle " + std::to_string(particle));
+      require_finite(hot_.velocity(particle), "velocity of particle ", particle);
     this->add_up(hot_.first, hot_.end());
     if (hot_.count() > 1) this->momentum_ = T(0);
   }
@@ -146,11 +135,9 @@ template <Real T> class Cold final : public OnLattice<T> {
   // Far out, where doubles are wide apart, particles may have the same place: that is found when they are taken in.
   T uneven_gap(ParticleIndex particle) const {
     const double from = spacings(particle), to = spacings(particle + 1);
-    if (from < to) return (exactly<T>(to) - exactly<T>(from)) * spacing_;
-    throw std::invalid_argument("particles " + std::to_string(particle) + " and " + std::to_string(particle + 1) +
-                                " have no distance (both " + std::to_string(from) +
-                                " spacings from the origin, as doubles): give fewer particles, or an exponent of the "
-                                "density nearer to 0");
+    require(from < to, "particles ", particle, " and ", particle + 1, " have no distance (both ", from,
+            " spacings from the origin, as doubles): give fewer particles, or an exponent of the density nearer to 0");
+    return (exactly<T>(to) - exactly<T>(from)) * spacing_;
   }
 
   bool left_;

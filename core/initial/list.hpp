@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <optional>
-#include <stdexcept>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -27,24 +25,18 @@ template <Real T> class List final : public Particles<T> {
        std::optional<T> momentum = {}, NeighbourDifferences<T> differences = {})
       : x_(std::move(positions)), v_(std::move(velocities)), m_(std::move(masses)),
         differences_(std::move(differences)), circumference_(std::move(circumference)) {
-    if (x_.empty()) throw std::invalid_argument("no particles: list at least one");
-    if (v_.size() != x_.size() || (!m_.empty() && m_.size() != x_.size()))
-      throw std::invalid_argument("lists of different lengths (" + std::to_string(x_.size()) + " positions, " +
-                                  std::to_string(v_.size()) + " velocities, " + std::to_string(m_.size()) +
-                                  " masses): give one velocity and one mass per position");
+    require(!x_.empty(), "no particles: list at least one");
+    require(v_.size() == x_.size() && (m_.empty() || m_.size() == x_.size()), "lists of different lengths (", x_.size(),
+            " positions, ", v_.size(), " velocities, ", m_.size(),
+            " masses): give one velocity and one mass per position");
     for (const auto& [values, name] : {std::pair{&x_, "position"}, {&v_, "velocity"}, {&m_, "mass"}})
-      for (std::size_t i = 0; i < values->size(); ++i)
-        if (!is_finite((*values)[i]))
-          require_finite((*values)[i], std::string(name) + " of particle " + std::to_string(i));
+      for (std::size_t i = 0; i < values->size(); ++i) require_finite((*values)[i], name, " of particle ", i);
     require_finite(circumference_, "circumference");
-    if (is_negative(circumference_))
-      throw std::invalid_argument("circumference is negative (" + in_message(circumference_) +
-                                  "): give a positive one for a ring, 0 for a line");
+    require(!is_negative(circumference_), "circumference is negative (", circumference_,
+            "): give a positive one for a ring, 0 for a line");
     require_order();
     for (std::size_t i = 0; i < m_.size(); ++i) {
-      if (!(m_[i] > T(0)))
-        throw std::invalid_argument("particle " + std::to_string(i) + " has no positive mass (" + in_message(m_[i]) +
-                                    "): give it one");
+      require(m_[i] > T(0), "particle ", i, " has no positive mass (", m_[i], "): give it one");
       identical_ = identical_ && m_[i] == m_[0];
     }
     CompensatedSum<T> total, sum;
@@ -93,25 +85,21 @@ template <Real T> class List final : public Particles<T> {
   void require_order() const {
     const std::size_t gaps = x_.size() - (this->on_ring() ? 0 : 1);
     const auto& [given, speeds] = differences_;
-    if ((!given.empty() && given.size() != gaps) || (!speeds.empty() && speeds.size() != gaps))
-      throw std::invalid_argument("not one gap and closing speed for each pair of neighbours (" +
-                                  std::to_string(given.size()) + " and " + std::to_string(speeds.size()) + " for " +
-                                  std::to_string(gaps) + "): give all of them, or none");
+    require((given.empty() || given.size() == gaps) && (speeds.empty() || speeds.size() == gaps),
+            "not one gap and closing speed for each pair of neighbours (", given.size(), " and ", speeds.size(),
+            " for ", gaps, "): give all of them, or none");
     for (ParticleIndex i = 0; i + 1 < count(); ++i) {
       if (given.empty() ? x_[at(i)] < x_[at(i + 1)] : is_positive(given[at(i)])) continue;
-      const std::string pair = "particles " + std::to_string(i) + " and " + std::to_string(i + 1);
       const bool touch = !given.empty() && !is_negative(given[at(i)]);
-      if (touch && !is_positive(closing_speed(i))) continue;
-      throw std::invalid_argument(
-          pair + (touch ? " touch and approach" : " are not in order in the working precision") + " (at " +
-          in_message(x_[at(i)]) + " and " + in_message(x_[at(i + 1)]) +
-          (touch ? "): give them the velocities that they have after this collision, or a gap, 1e-300 for instance"
-                 : "): sort them by position, give their gaps, or use more digits"));
+      require(touch && !is_positive(closing_speed(i)), "particles ", i, " and ", i + 1,
+              touch ? " touch and approach" : " are not in order in the working precision", " (at ", x_[at(i)], " and ",
+              x_[at(i + 1)],
+              touch ? "): give them the velocities that they have after this collision, or a gap, 1e-300 for instance"
+                    : "): sort them by position, give their gaps, or use more digits");
     }
-    if (this->on_ring() && !(given.empty() ? x_.back() - x_.front() < circumference_ : is_positive(given.back())))
-      throw std::invalid_argument("the particles do not fit on the ring (from " + in_message(x_.front()) + " to " +
-                                  in_message(x_.back()) + ", circumference " + in_message(circumference_) +
-                                  "): give it a larger circumference");
+    require(!this->on_ring() || (given.empty() ? x_.back() - x_.front() < circumference_ : is_positive(given.back())),
+            "the particles do not fit on the ring (from ", x_.front(), " to ", x_.back(), ", circumference ",
+            circumference_, "): give it a larger circumference");
   }
 
   std::vector<T> x_, v_, m_;

@@ -8,8 +8,6 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <stdexcept>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -26,10 +24,9 @@ template <Real T> class MassPattern {
   // std::invalid_argument for masses that are not positive and finite.
   explicit MassPattern(std::vector<T> masses, std::optional<bool> identical = {}) : masses_(std::move(masses)) {
     for (std::size_t j = 0; j < masses_.size(); ++j) {
-      require_finite(masses_[j], "mass " + std::to_string(j) + " of the pattern");
-      if (!(masses_[j] > T(0)))
-        throw std::invalid_argument("mass " + std::to_string(j) + " of the pattern is not positive (" +
-                                    in_message(masses_[j]) + "): give positive masses");
+      require_finite(masses_[j], "mass ", j, " of the pattern");
+      require(masses_[j] > T(0), "mass ", j, " of the pattern is not positive (", masses_[j],
+              "): give positive masses");
       identical_ = identical_ && masses_[j] == masses_[0];
     }
     if (identical) identical_ = *identical;
@@ -40,12 +37,10 @@ template <Real T> class MassPattern {
   MassPattern(const T& least, const T& greatest, ParticleIndex count, std::uint64_t seed, std::uint64_t replica)
       : masses_{least, greatest}, identical_(false), unit_((greatest - least) / T(drawn_unit)) {
     require_finite(greatest, "greatest of the random masses");
-    if (!(least > T(0) && greatest > least))
-      throw std::invalid_argument("random masses from " + in_message(least) + " to " + in_message(greatest) +
-                                  ": give two positive masses, the smaller one first");
-    if (count < 1 || count >= std::int64_t{1} << 31)
-      throw std::invalid_argument("random masses of " + std::to_string(count) +
-                                  " particles: give from 1 to 2147483647");
+    require(least > T(0) && greatest > least, "random masses from ", least, " to ", greatest,
+            ": give two positive masses, the smaller one first");
+    require(count >= 1 && count < std::int64_t{1} << 31, "random masses of ", count,
+            " particles: give from 1 to 2147483647");
     std::vector<std::int64_t> sums{0};
     sums.reserve(static_cast<std::size_t>(count) + 1);
     std::int64_t low = drawn_unit, high = 0;

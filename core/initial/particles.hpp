@@ -4,10 +4,9 @@
 
 #include <cstdint>
 #include <limits>
-#include <stdexcept>
 #include <string>
 
-#include "cradle/core/base/real.hpp"
+#include "cradle/core/base/require.hpp"
 #include "cradle/core/laws/wall.hpp"
 
 namespace cradle {
@@ -150,44 +149,35 @@ template <Real T> class Particles {
   }
 };
 
-// A number for messages.
-template <Real T> std::string in_message(const T& x) { return std::to_string(to_double(x)); }
-
-// Throws std::invalid_argument unless the number is finite; `what` names it, for example "position of particle 3".
-template <Real T> void require_finite(const T& x, const std::string& what) {
-  if (!is_finite(x))
-    throw std::invalid_argument(what + " is not finite (" + in_message(x) +
-                                "): give a number within the range of the scalar type");
-}
-
 // Throws std::invalid_argument if the total mass, momentum or energy is beyond the type's range.
 template <Real T> void require_sums(const Particles<T>& particles) {
-  const auto require = [](const T& sum, const char* what) {
-    if (!is_finite(sum))
-      throw std::invalid_argument(std::string(what) + " of all particles overflows (found no finite number): give "
-                                                      "smaller masses or speeds, or a scalar type of a wider range");
+  const auto require_sum = [](const T& sum, const char* what) {
+    require(is_finite(sum), what,
+            " of all particles overflows (found no finite number): give smaller masses or speeds, or a scalar type of "
+            "a wider range");
   };
-  require(particles.total_mass(), "the mass");
-  require(particles.momentum(), "the momentum");
-  require(particles.kinetic_energy(), "the kinetic energy");
+  require_sum(particles.total_mass(), "the mass");
+  require_sum(particles.momentum(), "the momentum");
+  require_sum(particles.kinetic_energy(), "the kinetic energy");
+}
+
+// For random states: throws std::invalid_argument for no particles, or more than their numbers are made for.
+inline void require_countable(ParticleIndex count, const std::string& what) {
+  require(count >= 1 && count < std::int64_t{1} << 31, what, " of ", count, " particles: give it from 1 to 2147483647");
 }
 
 // For chains without gravity and shaken walls. Throws std::invalid_argument; `what_to_do` ends the message.
 template <Real T> void require_no_gravity(const Particles<T>& particles, const std::string& what_to_do) {
-  if (particles.fall())
-    throw std::invalid_argument("particles under gravity in a chain without it (acceleration " +
-                                in_message(particles.acceleration()) + "): " + what_to_do);
+  require(!particles.fall(), "particles under gravity in a chain without it (acceleration ", particles.acceleration(),
+          "): ", what_to_do);
   for (const End end : {End::left, End::right})
     if (const Wall<T>* wall = particles.wall(end); wall != nullptr && wall->motion != nullptr)
-      throw std::invalid_argument("a shaken wall in a chain without them (amplitude " +
-                                  in_message(wall->motion->amplitude()) + "): " + what_to_do);
+      require(false, "a shaken wall in a chain without them (amplitude ", wall->motion->amplitude(), "): ", what_to_do);
 }
 
 // Checks the requirements of all chains. Throws std::invalid_argument.
 template <Real T> void require_particles(const Particles<T>& particles, const T& start) {
-  if (particles.count() < 1)
-    throw std::invalid_argument("a chain without particles (" + std::to_string(particles.count()) +
-                                "): give it at least one");
+  require(particles.count() >= 1, "a chain without particles (", particles.count(), "): give it at least one");
   require_finite(start, "time of the start");
   require_sums(particles);
 }

@@ -11,13 +11,10 @@
 
 #include <cstdint>
 #include <memory>
-#include <stdexcept>
-#include <string>
 #include <utility>
 #include <vector>
 
 #include "cradle/core/base/counter_rng.hpp"
-#include "cradle/core/base/portable_log.hpp"
 #include "cradle/core/initial/rows.hpp"
 
 namespace cradle {
@@ -27,8 +24,7 @@ inline std::int64_t exponential_gap(std::uint64_t seed, std::uint64_t replica, P
   // Indices that no velocity and no wall has (ring.hpp, wall.hpp).
   const std::uint64_t bits =
       random_bits(seed, replica, static_cast<std::uint64_t>(particle) | std::uint64_t{0xFD} << 56);
-  const double uniform = (static_cast<double>(bits >> 12) + 0.5) * 0x1p-52;
-  return static_cast<std::int64_t>(-detail::portable_log(uniform) * static_cast<double>(displacement_unit)) + 1;
+  return static_cast<std::int64_t>(exponential(bits) * static_cast<double>(displacement_unit)) + 1;
 }
 
 namespace detail {
@@ -37,9 +33,7 @@ using Displacements = std::shared_ptr<std::vector<std::int64_t>>;
 
 // Throws std::invalid_argument for more particles than 64 bits hold places for.
 inline Displacements displacements(ParticleIndex count) {
-  if (count < 1 || count >= std::int64_t{1} << 31)
-    throw std::invalid_argument("a Poisson process of " + std::to_string(count) +
-                                " particles: give it from 1 to 2147483647");
+  require_countable(count, "a Poisson process");
   return std::make_shared<std::vector<std::int64_t>>(static_cast<std::size_t>(count));
 }
 

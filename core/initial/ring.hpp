@@ -1,8 +1,7 @@
 #pragma once
 // Free cooling: particles on a ring (a periodic line), of mass 1 or with other masses, at equal distances or
 // displaced at random, with independent velocities of a given variance and zero total momentum. Velocities and
-// displacements are integers, times a unit that every scalar type rounds, so that all types start from the same state;
-// they depend only on seed, replica and particle (counter_rng.hpp).
+// displacements are whole numbers times a unit (README.md).
 //
 // Zero momentum: for identical masses the mean is subtracted from the integers, and its remainder, less than one per
 // particle, from the first particles. For masses that differ the velocity of the centre of mass, sum m_b n_b / sum m_b
@@ -10,13 +9,11 @@
 // contain it.
 
 #include <cmath>
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "cradle/core/base/counter_rng.hpp"
-#include "cradle/core/base/portable_log.hpp"
 #include "cradle/core/initial/mass_pattern.hpp"
 #include "cradle/core/initial/particles.hpp"
 #include "cradle/core/initial/rows.hpp"
@@ -62,14 +59,11 @@ namespace detail {
 
 // Throws std::invalid_argument for what cannot be a gas on a length; `name`: of which kind it is.
 template <Real T> void require_gas(const std::string& name, ParticleIndex count, const T& length, const T& deviation) {
-  if (count < 1 || count >= std::int64_t{1} << 31)
-    throw std::invalid_argument("a " + name + " of " + std::to_string(count) +
-                                " particles: give it from 1 to 2147483647");
-  require_finite(length, "length of the " + name);
+  require_countable(count, "a " + name);
+  require_finite(length, "length of the ", name);
   require_finite(deviation, "standard deviation of the velocities");
-  if (!(length > T(0) && deviation > T(0)))
-    throw std::invalid_argument("length or variance of the " + name + " is not positive (length " + in_message(length) +
-                                ", standard deviation " + in_message(deviation) + "): give positive numbers");
+  require(length > T(0) && deviation > T(0), "length or variance of the ", name, " is not positive (length ", length,
+          ", standard deviation ", deviation, "): give positive numbers");
 }
 
 }  // namespace detail
@@ -86,10 +80,8 @@ template <Real T> class Ring final : public OnLattice<T> {
       : OnLattice<T>(count, T(length / (T(count) * T(displacement_unit))), std::move(displacement), std::move(masses)),
         length_(std::move(length)), velocity_(std::move(velocity)), velocity_unit_(deviation / T(displacement_unit)) {
     detail::require_gas("ring", count, length_, deviation);
-    if (count % masses_.period() != 0)
-      throw std::invalid_argument("a pattern of " + std::to_string(masses_.period()) +
-                                  " masses does not divide a ring of " + std::to_string(count) +
-                                  " particles: give a multiple of it");
+    require(count % masses_.period() == 0, "a pattern of ", masses_.period(), " masses does not divide a ring of ",
+            count, " particles: give a multiple of it");
     if (masses_.identical())
       take_off_mean();
     else

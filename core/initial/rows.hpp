@@ -10,8 +10,6 @@
 #include <functional>
 #include <limits>
 #include <optional>
-#include <stdexcept>
-#include <string>
 #include <utility>
 
 #include "cradle/core/base/counter_rng.hpp"
@@ -47,9 +45,8 @@ template <Real T> T place_of(std::int64_t half_steps, std::int64_t displacement)
 
 // Uniform in plus/minus `perturbation` spacings, 0 <= perturbation < 1/2.
 inline Displacement uniform_displacement(double perturbation, std::uint64_t seed, std::uint64_t replica) {
-  if (!(perturbation >= 0 && perturbation < 0.5))
-    throw std::invalid_argument("perturbation out of range (" + std::to_string(perturbation) +
-                                "): give a number from 0 to below 0.5 (in spacings)");
+  require(perturbation >= 0 && perturbation < 0.5, "perturbation out of range (", perturbation,
+          "): give a number from 0 to below 0.5 (in spacings)");
   const auto bound = static_cast<std::int64_t>(std::floor(perturbation * static_cast<double>(displacement_unit)));
   return [=](ParticleIndex particle) {
     return uniform_integer(random_bits(seed, replica, static_cast<std::uint64_t>(particle)), bound);
@@ -112,27 +109,21 @@ template <Real T> class Rows final : public Particles<T> {
         displacement_(std::move(displacement)), masses_(std::move(masses)),
         left_unit_(left_.spacing / T(displacement_unit)), right_unit_(right_.spacing / T(displacement_unit)) {
     for (const auto& [row, name] : {std::pair{&left_, "left row"}, {&right_, "right row"}}) {
-      require_finite(row->velocity, std::string("velocity of the ") + name);
-      require_finite(row->spacing, std::string("spacing of the ") + name);
-      if (row->count < 1)
-        throw std::invalid_argument(std::string("a row without particles (the ") + name + " has " +
-                                    std::to_string(row->count) + "): give each at least one");
-      if (!(row->spacing > T(0)))
-        throw std::invalid_argument("a row's spacing is not positive (" + in_message(row->spacing) + ", the " + name +
-                                    "): give a positive number");
+      require_finite(row->velocity, "velocity of the ", name);
+      require_finite(row->spacing, "spacing of the ", name);
+      require(row->count >= 1, "a row without particles (the ", name, " has ", row->count, "): give each at least one");
+      require(row->spacing > T(0), "a row's spacing is not positive (", row->spacing, ", the ", name,
+              "): give a positive number");
     }
-    if (!(left_.velocity > right_.velocity))
-      throw std::invalid_argument("the rows do not approach each other (left " + in_message(left_.velocity) +
-                                  ", right " + in_message(right_.velocity) + "): make the left one faster");
+    require(left_.velocity > right_.velocity, "the rows do not approach each other (left ", left_.velocity, ", right ",
+            right_.velocity, "): make the left one faster");
     if (!centre_) return;
     require_finite(centre_->mass, "mass of the central particle");
     require_finite(centre_->velocity, "velocity of the central particle");
-    if (centre_->velocity > left_.velocity || centre_->velocity < right_.velocity)
-      throw std::invalid_argument("the central particle runs away from a row (" + in_message(centre_->velocity) +
-                                  "): give it a speed between those of the rows");
-    if (!(centre_->mass > T(0)))
-      throw std::invalid_argument("central mass is not positive (" + in_message(centre_->mass) +
-                                  "): give a positive one");
+    require(!(centre_->velocity > left_.velocity) && !(centre_->velocity < right_.velocity),
+            "the central particle runs away from a row (", centre_->velocity,
+            "): give it a speed between those of the rows");
+    require(centre_->mass > T(0), "central mass is not positive (", centre_->mass, "): give a positive one");
   }
 
   ParticleIndex count() const override { return left_.count + right_.count + (centre_ ? 1 : 0); }
@@ -213,9 +204,8 @@ template <Real T> class Rows final : public Particles<T> {
 template <Real T>
 Rows<T> symmetric_rows(ParticleIndex particles, const T& speed, const T& spacing, Displacement displacement,
                        MassPattern<T> masses = {}) {
-  if (particles % 2 != 0)
-    throw std::invalid_argument("an odd number of particles for two equal rows (" + std::to_string(particles) +
-                                "): give an even one, or two rows of their own");
+  require(particles % 2 == 0, "an odd number of particles for two equal rows (", particles,
+          "): give an even one, or two rows of their own");
   return {{particles / 2, speed, spacing},
           {particles / 2, T(-speed), spacing},
           std::nullopt,

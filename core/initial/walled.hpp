@@ -5,8 +5,6 @@
 #include <limits>
 #include <memory>
 #include <optional>
-#include <stdexcept>
-#include <string>
 #include <utility>
 
 #include "cradle/core/initial/particles.hpp"
@@ -26,12 +24,9 @@ template <Real T> class Walled final : public Particles<T> {
       : particles_(std::move(particles)), left_(std::move(left)), right_(std::move(right)),
         at_left_(std::move(at_left)), at_right_(std::move(at_right)), acceleration_(acceleration) {
     require_finite(acceleration_, "acceleration of the particles");
-    if (particles_->on_ring() && this->fall())
-      throw std::invalid_argument("gravity on a ring (circumference " + in_message(particles_->circumference()) +
-                                  "): leave it out, or give particles on a line");
-    if (particles_->on_ring())
-      throw std::invalid_argument("walls on a ring (circumference " + in_message(particles_->circumference()) +
-                                  "): leave them out, or give particles on a line");
+    require(!particles_->on_ring(), this->fall() ? "gravity" : "walls", " on a ring (circumference ",
+            particles_->circumference(), "): leave ", this->fall() ? "it" : "them",
+            " out, or give particles on a line");
     if (left_) require_wall(*left_, "left"), require_outside(gap(-1), "left", position(-1), 0);
     if (right_)
       require_wall(*right_, "right"), require_outside(gap(count() - 1), "right", position(count()), count() - 1);
@@ -43,10 +38,8 @@ template <Real T> class Walled final : public Particles<T> {
     for (const auto* wall : {&left_, &right_})
       if (*wall && (&**wall == this->floor() || (*wall)->motion != nullptr) && !((*wall)->temperature > 0) &&
           !is_positive((*wall)->restitution) && !is_positive((*wall)->rest_speed))
-        throw std::invalid_argument("a floor or shaken wall of restitution 0, on which particles come to rest "
-                                    "(restitution " +
-                                    in_message((*wall)->restitution) +
-                                    "): give it a rest speed, or a small restitution");
+        require(false, "a floor or shaken wall of restitution 0, on which particles come to rest (restitution ",
+                (*wall)->restitution, "): give it a rest speed, or a small restitution");
     if (this->fall()) potential_energy_ = -(acceleration_ * (total_mass() * particles_->centre_of_mass()));
   }
 
@@ -115,32 +108,25 @@ template <Real T> class Walled final : public Particles<T> {
   const Wall<T>& at(ParticleIndex particle) const { return particle < 0 ? *left_ : *right_; }
   auto at_start(ParticleIndex particle) const { return this->shift(particle, Pair<T>{}); }
 
-  static void require_wall(const Wall<T>& wall, const std::string& which) {
-    require_finite(wall.position, "position of the " + which + " wall");
-    require_finite(wall.speed, "speed of the " + which + " wall");
-    if (is_negative(wall.rest_speed) || !is_finite(wall.rest_speed))
-      throw std::invalid_argument("rest speed of the " + which + " wall is out of range (" +
-                                  in_message(wall.rest_speed) + "): give 0 or more");
-    if (is_negative(wall.restitution) || T(1) < wall.restitution)
-      throw std::invalid_argument("restitution of the " + which + " wall is out of range (" +
-                                  in_message(wall.restitution) + "): give a number from 0 to 1");
-    if (!(wall.temperature >= 0 && wall.temperature <= std::numeric_limits<double>::max()))
-      throw std::invalid_argument("temperature of the " + which + " wall is negative or not finite (" +
-                                  std::to_string(wall.temperature) +
-                                  "): give a positive one, or 0 for a reflecting wall");
+  static void require_wall(const Wall<T>& wall, const char* which) {
+    require_finite(wall.position, "position of the ", which, " wall");
+    require_finite(wall.speed, "speed of the ", which, " wall");
+    require(!is_negative(wall.rest_speed) && is_finite(wall.rest_speed), "rest speed of the ", which,
+            " wall is out of range (", wall.rest_speed, "): give 0 or more");
+    require(!is_negative(wall.restitution) && !(T(1) < wall.restitution), "restitution of the ", which,
+            " wall is out of range (", wall.restitution, "): give a number from 0 to 1");
+    require(wall.temperature >= 0 && wall.temperature <= std::numeric_limits<double>::max(), "temperature of the ",
+            which, " wall is negative or not finite (", wall.temperature,
+            "): give a positive one, or 0 for a reflecting wall");
   }
-  void require_one_pile(bool one, const std::string& what) const {
-    if (one) return;
-    throw std::invalid_argument("two walls with " + what + " (" + std::to_string(count()) + " particles, rest speeds " +
-                                in_message(left_->rest_speed) + " and " + in_message(right_->rest_speed) +
-                                "): leave it out at one of them");
+  void require_one_pile(bool one, const char* what) const {
+    require(one, "two walls with ", what, " (", count(), " particles, rest speeds ", left_->rest_speed, " and ",
+            right_->rest_speed, "): leave it out at one of them");
   }
-  void require_outside(const T& gap, const std::string& which, const T& wall, ParticleIndex particle) const {
-    if (is_positive(gap)) return;
-    throw std::invalid_argument(
-        "the " + which + " wall is not outside the particles, which would have met it before the start (wall at " +
-        in_message(wall) + ", particle " + std::to_string(particle) + " at " +
-        in_message(particles_->position(particle)) + "): move it outwards");
+  void require_outside(const T& gap, const char* which, const T& wall, ParticleIndex particle) const {
+    require(is_positive(gap), "the ", which,
+            " wall is not outside the particles, which would have met it before the start (wall at ", wall,
+            ", particle ", particle, " at ", particles_->position(particle), "): move it outwards");
   }
 
   std::shared_ptr<const Particles<T>> particles_;

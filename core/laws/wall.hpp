@@ -24,7 +24,6 @@
 #include <tuple>
 
 #include "cradle/core/base/counter_rng.hpp"
-#include "cradle/core/base/portable_log.hpp"
 #include "cradle/core/base/state.hpp"
 #include "cradle/core/laws/law.hpp"
 #include "cradle/core/laws/wall_motion.hpp"
@@ -69,8 +68,7 @@ inline double thermal_speed(std::uint64_t seed, std::uint64_t replica, End end, 
   // Indices that no particle has: displacements and velocities use those up to about 2^62 (counter_rng.hpp, ring.hpp).
   const std::uint64_t bits =
       random_bits(seed, replica, collision | (std::uint64_t{end == End::left ? 0xFEU : 0xFFU} << 56));
-  const double uniform = (static_cast<double>(bits >> 12) + 0.5) * 0x1p-52;
-  return std::sqrt(-2 * detail::portable_log(uniform));
+  return std::sqrt(2 * exponential(bits));
 }
 
 // The walls of a line of particles: none, one or two.

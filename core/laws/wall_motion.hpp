@@ -11,9 +11,8 @@
 
 #include <cstdint>
 #include <optional>
-#include <stdexcept>
-#include <string>
 
+#include "cradle/core/base/require.hpp"
 #include "cradle/core/laws/turns.hpp"
 
 namespace cradle {
@@ -28,14 +27,12 @@ template <Real T> class WallMotion {
   // The frequency is angular. Throws std::invalid_argument.
   WallMotion(Shape shape, const T& amplitude, const T& frequency, const T& phase)
       : shape_(shape), amplitude_(amplitude), frequency_(frequency), splitter_(splitter<T>()) {
-    const auto require = [](bool right, const char* what, const T& found, const char* to_do) {
-      if (!right)
-        throw std::invalid_argument(std::string(what) + " of a shaken wall is out of range (" +
-                                    std::to_string(to_double(found)) + "): give " + to_do);
-    };
-    require(is_positive(amplitude) && is_finite(amplitude), "amplitude", amplitude, "a positive one");
-    require(is_positive(frequency) && is_finite(frequency), "frequency", frequency, "a positive one");
-    require(is_finite(phase), "phase", phase, "a finite one");
+    constexpr const char* out_of_range = " of a shaken wall is out of range (";
+    require(is_positive(amplitude) && is_finite(amplitude), "amplitude", out_of_range, amplitude,
+            "): give a positive one");
+    require(is_positive(frequency) && is_finite(frequency), "frequency", out_of_range, frequency,
+            "): give a positive one");
+    require(is_finite(phase), "phase", out_of_range, phase, "): give a finite one");
     turns_per_time_ = quotient(Pair<T>{frequency, T(0)}, circle_.full_turn());
     turns_at_start_ = quotient(Pair<T>{phase, T(0)}, circle_.full_turn());
     const T turns = turns_per_time_.value();

@@ -11,7 +11,6 @@
 #include <functional>
 #include <limits>
 #include <ranges>
-#include <stdexcept>
 #include <vector>
 
 #include "cradle/core/chains/anchor.hpp"
@@ -75,9 +74,8 @@ void for_each_particle(const Configuration<T>& c, const Particles<T>& particles,
   const double length = to_double(particles.circumference());
   const bool images = length > 0 && std::isfinite(range.to - range.from);
   const double most_turns = images ? (range.to - range.from) / length + 2 : 0;
-  if (!(most_turns < 0x1p21))
-    throw std::invalid_argument("a range of more turns of the ring than can be counted (" + in_message(most_turns) +
-                                "): give a shorter one");
+  require(most_turns < 0x1p21, "a range of more turns of the ring than can be counted (", most_turns,
+          "): give a shorter one");
   const auto turns = static_cast<std::int64_t>(most_turns);
   for (std::size_t j = 0; j < c.x.size(); ++j) {
     const double x = to_double(c.x[j]), first = images ? std::floor((range.from - x) / length) : 0;
@@ -123,8 +121,8 @@ inline std::vector<double> bin_centres(BinRange range, std::size_t bins) {
 template <Real T>
 Profile profile(const Configuration<T>& c, const Particles<T>& particles, const T& elapsed, BinRange range,
                 std::size_t bins, const std::function<bool()>& stopped = {}) {
-  if (!(range.from < range.to) || !std::isfinite(range.to - range.from) || bins == 0)
-    throw std::invalid_argument("profile without extent: give a range that increases and at least one bin");
+  require(range.from < range.to && std::isfinite(range.to - range.from) && bins > 0,
+          "profile without extent: give a range that increases and at least one bin");
   const double width = (range.to - range.from) / static_cast<double>(bins);
   std::vector<detail::Bin> sums(bins);
   for_each_particle(

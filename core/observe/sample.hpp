@@ -32,18 +32,11 @@ template <Real T> struct Sample {
   WallTallies<T> walls = {};
 };
 
-// The accounts of a run's walls at a time; of a wall that is not there, an empty one.
-template <class Run, Real T = typename Run::Scalar> WallTallies<T> wall_tallies(const Run& run, const T& time) {
-  if constexpr (requires { run.wall_tallies(time); })
-    return run.wall_tallies(time);
-  else
-    return {};
-}
-
 // A sample of a Simulation or a StickyGas. `time` must be between the last collision and the time advanced to.
 template <class Run, Real T = typename Run::Scalar>
 Sample<T> sample(const Run& run, const T& initial_energy, const T& time) {
-  const WallTallies<T> walls = wall_tallies(run, time);
+  WallTallies<T> walls;  // of a wall that is not there, an empty one
+  if constexpr (requires { run.wall_tallies(time); }) walls = run.wall_tallies(time);
   const T lost = run.energy_lost(time), given = given_by(walls), left = initial_energy - lost;
   // The ledger of particles that fall has potential energy too.
   bool summed = run.falls() || T(left + left) < initial_energy;

@@ -16,7 +16,6 @@
 #include <functional>
 #include <limits>
 #include <numbers>
-#include <stdexcept>
 #include <vector>
 
 #include "cradle/core/laws/turns.hpp"
@@ -31,8 +30,7 @@ class StructureFactor {
  public:
   // For n up to `largest`. Throws std::invalid_argument for a length that is not positive and finite.
   StructureFactor(double length, std::uint64_t largest) : length_(length), waves_(octave_steps(largest)) {
-    if (!(length > 0) || !std::isfinite(length))
-      throw std::invalid_argument("waves on no length (" + in_message(length) + "): give a positive length");
+    require(length > 0 && std::isfinite(length), "waves on no length (", length, "): give a positive length");
   }
 
   std::vector<double> wave_numbers() const {
@@ -79,9 +77,8 @@ class PairDistribution {
   // positive or longer than half of a ring or the length between walls.
   PairDistribution(double distance, std::size_t bins, double length, bool on_ring)
       : distance_(distance), length_(length), on_ring_(on_ring), bins_(bins) {
-    if (!(distance > 0 && distance <= (on_ring ? length / 2 : length)) || bins == 0)
-      throw std::invalid_argument("pairs up to a distance of " + in_message(distance) + " on a length of " +
-                                  in_message(length) + ": give half of a ring at most, and at least one bin");
+    require(distance > 0 && distance <= (on_ring ? length / 2 : length) && bins > 0, "pairs up to a distance of ",
+            distance, " on a length of ", length, ": give half of a ring at most, and at least one bin");
   }
 
   std::vector<double> centres() const { return bin_centres({0, distance_}, bins_); }

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <unordered_map>
 
+#include "cradle/core/base/counter_rng.hpp"
 #include "cradle/core/initial/particles.hpp"
 
 namespace cradle {
@@ -24,11 +25,8 @@ class Trace {
   std::uint64_t digest() const { return digest_; }
 
  private:
-  static std::uint64_t mix(std::uint64_t past, ParticleIndex particle) {  // the splitmix64 finaliser
-    std::uint64_t z = past + 0x9E3779B97F4A7C15 * (static_cast<std::uint64_t>(particle) + 1);
-    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9;
-    z = (z ^ (z >> 27)) * 0x94D049BB133111EB;
-    return z ^ (z >> 31);
+  static std::uint64_t mix(std::uint64_t past, ParticleIndex particle) {
+    return splitmix64(past + 0x9E3779B97F4A7C15 * (static_cast<std::uint64_t>(particle) + 1));
   }
 
   std::unordered_map<ParticleIndex, std::uint64_t> past_;

@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "cradle/core/chains/collision_result.hpp"
-#include "cradle/core/chains/notice.hpp"
 #include "cradle/core/engine/status.hpp"
 #include "cradle/core/engine/ties.hpp"
 #include "cradle/core/parallel/observed.hpp"

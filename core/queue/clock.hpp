@@ -1,7 +1,6 @@
 #pragma once
-// Time as origin and offset. At t = 6500 a double resolves 9e-13, while collisions in a collapsing cluster are 1e-9 or
-// less apart. So the engine computes with offsets from a moving origin; the origin is stored as an unevaluated sum,
-// with a relative error of the square of the type's precision. All times are in units of the scene.
+// Time as origin and offset (README.md, Time). The origin is stored as an unevaluated sum, with a relative error of the
+// square of the type's precision. All times are in units of the scene.
 
 #include "cradle/core/base/real.hpp"
 #include "cradle/core/base/state.hpp"

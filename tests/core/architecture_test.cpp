@@ -135,9 +135,8 @@ TEST(Architecture, CoreUsesNoStandardMathematicsOnTheScalar) {
                                         "core/chains/configuration.hpp",
                                         "core/base/counter_rng.hpp",
                                         "core/base/elementary.hpp",  // exponents
-                                        "core/base/portable_log.hpp",
-                                        "core/base/real.hpp",  // a double, taken apart
-                                        "core/laws/wall.hpp",  // random speeds
+                                        "core/base/real.hpp",        // a double, taken apart
+                                        "core/laws/wall.hpp",        // random speeds
                                         "core/ensemble/histogram.hpp",
                                         "core/ensemble/moments.hpp",
                                         "core/queue/event_queue.hpp",

@@ -16,7 +16,6 @@
 #include "cradle/core/observe/clusters.hpp"
 #include "cradle/core/observe/configuration_statistics.hpp"
 #include "cradle/core/observe/correlations.hpp"
-#include "cradle/core/observe/sample.hpp"
 #include "cradle/tools/engines/any_engine.hpp"
 #include "cradle/tools/engines/engine_of.hpp"
 
@@ -226,7 +225,7 @@ template <Real T> class MomentIn final : public Moment {
     return *value;
   }
   const Sample<T>& sampled() const {
-    return computed(sample_, [&] { return cradle::sample(run_, particles_.kinetic_energy(), time_); });
+    return computed(sample_, [&] { return run_.sample(particles_.kinetic_energy(), time_); });
   }
   const Configuration<T>& configuration() const {
     return computed(configuration_,

@@ -39,8 +39,7 @@ template <Real T> class Engine {
   virtual const Account<T>& account() const = 0;
   virtual T energy_lost(const T& time) const = 0;
   virtual T kinetic_energy(const T& time) const = 0;
-  virtual bool falls() const = 0;
-  virtual WallTallies<T> wall_tallies(const T& time) const = 0;
+  virtual Sample<T> sample(const T& initial_energy, const T& time) const = 0;
   virtual T last_collision_time() const = 0;
   virtual const CollapseReport<T>* collapse() const = 0;  // null if no collisions are made
 
@@ -51,11 +50,8 @@ template <Real T> class Engine {
   /// About how far rounding has moved the kinetic energy by this time; none if this engine does not estimate it.
   virtual std::optional<T> energy_deviation(const T& time) const = 0;
 
-  virtual bool on_ring() const = 0;
   virtual ParticleIndex collided_particles() const = 0;
   virtual std::optional<T> gap_to_wall(End end, const T& time) const = 0;
-  virtual T front_left(const T& time) const = 0;
-  virtual T front_right(const T& time) const = 0;
   virtual Configuration<T> configuration(const T& time) const = 0;
   virtual Configuration<T> configuration_at_last_collision() const = 0;
 
@@ -116,8 +112,9 @@ template <Real T, class Run> class EngineOf final : public Engine<T> {
   const Account<T>& account() const override { return run_.account(); }
   T energy_lost(const T& time) const override { return run_.energy_lost(time); }
   T kinetic_energy(const T& time) const override { return run_.kinetic_energy(time); }
-  bool falls() const override { return run_.falls(); }
-  WallTallies<T> wall_tallies(const T& time) const override { return cradle::wall_tallies(run_, time); }
+  Sample<T> sample(const T& initial_energy, const T& time) const override {
+    return cradle::sample(run_, initial_energy, time);
+  }
   T last_collision_time() const override { return run_.last_collision_time(); }
   const CollapseReport<T>* collapse() const override {
     if constexpr (has_chain)
@@ -140,7 +137,6 @@ template <Real T, class Run> class EngineOf final : public Engine<T> {
       return {};
   }
 
-  bool on_ring() const override { return run_.on_ring(); }
   std::optional<T> gap_to_wall(End end, const T& time) const override {
     if constexpr (requires { run_.gap_to_wall(end, time); })
       return run_.gap_to_wall(end, time);
@@ -148,8 +144,6 @@ template <Real T, class Run> class EngineOf final : public Engine<T> {
       return {};
   }
   ParticleIndex collided_particles() const override { return run_.collided_particles(); }
-  T front_left(const T& time) const override { return run_.front_left(time); }
-  T front_right(const T& time) const override { return run_.front_right(time); }
   Configuration<T> configuration(const T& time) const override { return run_.configuration(time); }
   Configuration<T> configuration_at_last_collision() const override { return run_.configuration_at_last_collision(); }
 

@@ -14,8 +14,7 @@ namespace {
 constexpr const char* below = "replicas/";
 
 bool is_kept(std::string_view table) {
-  const auto rows = measurement_rows();
-  return std::any_of(rows.begin(), rows.end(), [&](const MeasurementRow* row) {
+  return std::ranges::any_of(measurement_rows(), [&](const MeasurementRow* row) {
     return row->kept && table.starts_with(std::string(row->name) + "/");
   });
 }

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 #include <numeric>
 #include <optional>
 #include <span>
@@ -13,8 +12,7 @@ namespace cradle::tools {
 
 void ReplicaTable::add(const ReplicaRow& row) {
   integers_.insert(integers_.end(), {row.index, static_cast<std::uint64_t>(row.outcome), row.collisions, row.merges});
-  for (std::size_t k = 0; k < width_; ++k)
-    numbers_.push_back(k < row.numbers.size() ? row.numbers[k] : std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t k = 0; k < width_; ++k) numbers_.push_back(k < row.numbers.size() ? row.numbers[k] : missing);
 }
 
 ReplicaRow ReplicaTable::operator[](std::size_t k) const {
@@ -26,8 +24,7 @@ ReplicaRow ReplicaTable::operator[](std::size_t k) const {
 std::vector<std::size_t> ReplicaTable::order() const {
   std::vector<std::size_t> rows(size());
   std::iota(rows.begin(), rows.end(), std::size_t{0});
-  std::sort(rows.begin(), rows.end(),
-            [&](std::size_t a, std::size_t b) { return integers_[a * integers] < integers_[b * integers]; });
+  std::ranges::sort(rows, {}, [&](std::size_t row) { return integers_[row * integers]; });
   return rows;
 }
 
@@ -35,9 +32,8 @@ EnsembleState::EnsembleState(std::string group, Scene scene, const std::vector<S
     : group_(std::move(group)), scene_(std::move(scene)), layout_(replica_layout(scene_)),
       table_(layout_.numbers.size()) {
   for (const SpreadRequest& request : spreads) {
-    const auto found =
-        std::find_if(layout_.quantities.begin(), layout_.quantities.end(),
-                     [&](const Quantity& quantity) { return quantity.group + "/" + quantity.name == request.name; });
+    const auto found = std::ranges::find(layout_.quantities, request.name,
+                                         [](const Quantity& of) { return of.group + "/" + of.name; });
     if (found == layout_.quantities.end())
       throw Error({"--spread", 0, ""}, "nothing of this name in the series or profiles", request.name,
                   "choose one of those that `cradle info` lists for a result of this scene");
@@ -62,15 +58,11 @@ std::map<ReplicaIndex, std::string> EnsembleState::failures() const {
 }
 
 bool EnsembleState::holds_all_of(const EnsembleState& other) const {
-  for (const ReplicaRange& range : other.tree_.present())
-    if (!tree_.missing(range).empty()) return false;
-  return true;
+  return std::ranges::all_of(other.tree_.present(), [this](const auto& range) { return tree_.missing(range).empty(); });
 }
 
 bool EnsembleState::holds_any_of(const EnsembleState& other) const {
-  for (const ReplicaRange& range : other.tree_.present())
-    if (tree_.overlaps(range)) return true;
-  return false;
+  return std::ranges::any_of(other.tree_.present(), [this](const auto& range) { return tree_.overlaps(range); });
 }
 
 void EnsembleState::take(EnsembleState& other) {

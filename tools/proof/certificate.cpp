@@ -181,14 +181,11 @@ Result certified_result(Certified run) {
                      {"scene_checksum", fmt::format("{:016x}", crc64(effective_toml(run.scene)))}},
                     {}};
   Group of_series{"series", {}, {}}, exact{"exact/series", {}, {}};
-  std::vector<double> time, sampled, widest, gap, of_gap;
+  std::vector<double> sampled;
   std::vector<std::string> time_text;
-  std::vector<std::uint64_t> collisions;
   Bounds energy, left, right;
   std::array<Bounds, 2> given, lost;
   for (const CertainSample& s : c.samples) {
-    time.push_back(s.time), collisions.push_back(s.collisions);
-    widest.push_back(s.widest), gap.push_back(s.least_gap), of_gap.push_back(s.widest_of_gap);
     if (!s.of_series) continue;
     sampled.push_back(s.time), time_text.push_back(s.time_text);
     energy.add(s.energy), left.add(s.front_left), right.add(s.front_right);
@@ -196,13 +193,16 @@ Result certified_result(Certified run) {
       if (const auto& wall = s.walls[k]) given[k].add(wall->given), lost[k].add(wall->lost);
   }
   exact.columns.push_back({"time", "t", "of the sample", time_text});
-  certificate.columns = {{"time", "t", "up to which the run is proved", time},
-                         {"collisions", "1", "proved until then", collisions},
-                         {"widest", "1", "largest radius of a place in l, as a power of ten", widest},
-                         {"gap", "1", "smallest gap in l, as a power of ten", gap},
-                         {"widest_of_gap", "1", "largest radius of a gap against the gap, as a power of ten", of_gap}};
-  const auto own = std::find_if(result.groups.begin(), result.groups.end(),
-                                [](const Group& group) { return group.name == "series"; });
+  const auto of_samples = [&](auto of) { return numbers_of(c.samples, of); };
+  using Sample = CertainSample;
+  certificate.columns = {
+      {"time", "t", "up to which the run is proved", of_samples(&Sample::time)},
+      {"collisions", "1", "proved until then", of_samples(&Sample::collisions)},
+      {"widest", "1", "largest radius of a place in l, as a power of ten", of_samples(&Sample::widest)},
+      {"gap", "1", "smallest gap in l, as a power of ten", of_samples(&Sample::least_gap)},
+      {"widest_of_gap", "1", "largest radius of a gap against the gap, as a power of ten",
+       of_samples(&Sample::widest_of_gap)}};
+  const auto own = std::ranges::find(result.groups, "series", &Group::name);
   // Samples that a collision falls upon are not proved: the bounds then have rows of their own.
   const bool joined = own != result.groups.end() && own->columns.front().rows() == sampled.size();
   if (!joined)

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <numeric>
 
 #include "cradle/tools/ensemble/layout.hpp"
 #include "cradle/tools/ensemble/state.hpp"
@@ -33,6 +32,10 @@ Kept kept(std::uint64_t index, const Certified& run, const std::vector<double>& 
     kept.energies[static_cast<std::size_t>(at - times.begin())] = energy;
   }
   return kept;
+}
+
+std::uint64_t proved_of(const CertifiedReplicas& run) {
+  return static_cast<std::uint64_t>(std::ranges::count(run.replicas, true, &CertifiedReplica::proved));
 }
 
 }  // namespace
@@ -80,15 +83,13 @@ CertifiedReplicas certify_replicas(const Scene& scene, std::uint64_t count, unsi
 }
 
 std::string replicas_text(const CertifiedReplicas& run) {
-  const auto proved = static_cast<std::uint64_t>(
-      std::count_if(run.replicas.begin(), run.replicas.end(), [](const auto& r) { return r.proved; }));
   std::uint64_t collisions = 0;
   std::string text;
   for (const CertifiedReplica& r : run.replicas) {
     collisions += r.collisions;
     if (!r.proved) text += fmt::format("replica {}: undecided {}\n", r.index, r.doubt);
   }
-  text += fmt::format("proved: {} of {} replicas, {} collisions\n", proved, run.replicas.size(), collisions);
+  text += fmt::format("proved: {} of {} replicas, {} collisions\n", proved_of(run), run.replicas.size(), collisions);
   for (std::size_t k = run.energy.entries(); k-- > 0;)  // the last time that any has reached
     if (const std::uint64_t n = run.energy.count(k); n > 0) {
       text += fmt::format("  energy at t = {}: {:.12g}", run.times[k], run.energy.mean[k]);
@@ -100,14 +101,9 @@ std::string replicas_text(const CertifiedReplicas& run) {
 }
 
 Result replicas_result(const CertifiedReplicas& run) {
-  std::vector<std::uint64_t> index, proved, digits, collisions;
-  std::vector<double> low, high;
-  for (const CertifiedReplica& r : run.replicas) {
-    index.push_back(r.index), proved.push_back(r.proved), digits.push_back(r.digits),
-        collisions.push_back(r.collisions);
-    low.push_back(r.energy.low), high.push_back(r.energy.high);
-  }
-  const std::uint64_t all = std::accumulate(proved.begin(), proved.end(), std::uint64_t{0});
+  using Row = CertifiedReplica;
+  const auto of_rows = [&](auto of) { return numbers_of(run.replicas, of); };
+  const std::uint64_t all = proved_of(run);
   Result result;
   result.attributes = provenance(run.scene, precision_name(run.scene.run),
                                  all == run.replicas.size() ? "replicas with proofs" : end_row(RunEnd::undecided).text);
@@ -116,14 +112,16 @@ Result replicas_result(const CertifiedReplicas& run) {
   const std::string unit = "m l^2/t^2";
   const Quantity energy{"series", "energy", unit, "kinetic energy, of those that are proved", 0, run.times.size()};
   result.groups.push_back(statistics_group("ensemble/series/energy", energy, run.energy));
-  result.groups.push_back({"replicas",
-                           {},
-                           {{"index", "1", "of the replica", index},
-                            {"proved", "1", "1: to the end; 0: undecided", proved},
-                            {"digits", "1", "of the proof", digits},
-                            {"collisions", "1", "proved", collisions},
-                            {"energy_low", unit, "lower bound of the energy at the last sample that is proved", low},
-                            {"energy_high", unit, "upper bound of it", high}}});
+  result.groups.push_back(
+      {"replicas",
+       {},
+       {{"index", "1", "of the replica", of_rows(&Row::index)},
+        {"proved", "1", "1: to the end; 0: undecided", of_rows(&Row::proved)},
+        {"digits", "1", "of the proof", of_rows(&Row::digits)},
+        {"collisions", "1", "proved", of_rows(&Row::collisions)},
+        {"energy_low", unit, "lower bound of the energy at the last sample that is proved",
+         of_rows([](const Row& row) { return row.energy.low; })},
+        {"energy_high", unit, "upper bound of it", of_rows([](const Row& row) { return row.energy.high; })}}});
   result.groups.back().columns.front().names = true;
   return result;
 }

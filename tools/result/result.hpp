@@ -3,9 +3,11 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <tuple>
+#include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -34,6 +36,14 @@ struct Column {
   static auto state(auto& self) { return std::tie(self.name, self.unit, self.description, self.values, self.width); }
   void loaded() const;
 };
+
+/// A number for each row: what `of`, a function or a member, gives for it.
+template <class Rows, class Of> auto numbers_of(const Rows& rows, Of of) {
+  using Number = std::remove_cvref_t<decltype(std::invoke(of, *rows.begin()))>;
+  std::vector<std::conditional_t<std::is_integral_v<Number>, std::uint64_t, Number>> numbers;
+  for (const auto& row : rows) numbers.push_back(std::invoke(of, row));
+  return numbers;
+}
 
 using Attribute = std::pair<std::string, std::variant<std::string, double, std::uint64_t>>;
 

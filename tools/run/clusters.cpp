@@ -111,22 +111,15 @@ Group force_table(const theory::WetZone<double>& zone) {
 }
 
 Group meetings_table(const std::vector<theory::ClusterMeeting>& meetings) {
-  std::vector<double> time, x, speed, energy;
-  std::vector<std::uint64_t> stuck;
-  for (const auto& meeting : meetings) {
-    time.push_back(meeting.time);
-    x.push_back(meeting.x);
-    speed.push_back(meeting.closing_speed);
-    energy.push_back(meeting.relative_energy);
-    stuck.push_back(meeting.stuck);
-  }
+  using Meeting = theory::ClusterMeeting;
   return {"meetings",
           {},
-          {{"time", "t", "when the clusters met", std::move(time)},
-           {"x", "l", "where", std::move(x)},
-           {"closing_speed", "l/t", "closing speed before", std::move(speed)},
-           {"relative_energy", "m l^2/t^2", "mu w^2/2 before, to be compared with E_loss", std::move(energy)},
-           {"stuck", "1", "1 where they stuck, 0 where they passed", std::move(stuck)}}};
+          {{"time", "t", "when the clusters met", numbers_of(meetings, &Meeting::time)},
+           {"x", "l", "where", numbers_of(meetings, &Meeting::x)},
+           {"closing_speed", "l/t", "closing speed before", numbers_of(meetings, &Meeting::closing_speed)},
+           {"relative_energy", "m l^2/t^2", "mu w^2/2 before, to be compared with E_loss",
+            numbers_of(meetings, &Meeting::relative_energy)},
+           {"stuck", "1", "1 where they stuck, 0 where they passed", numbers_of(meetings, &Meeting::stuck)}}};
 }
 
 }  // namespace

@@ -6,9 +6,11 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <type_traits>
 
+#include "cradle/precision/bin_float.hpp"
+#include "cradle/tools/engines/in_precision.hpp"
 #include "cradle/tools/record/rows.hpp"
-#include "cradle/tools/run/run.hpp"
 
 namespace cradle::tools {
 
@@ -64,8 +66,8 @@ std::string within(const Number& x, const Number& error) {
   return mantissa + (exponent == std::string::npos ? "" : text.substr(exponent)) + " +- " + error_text(error);
 }
 
-}  // namespace
-
+// The text for standard output; times have all digits that are known. `at_wall`: the wall on which it was, if it can
+// hold particles.
 std::string collapse_report(const ReportedCollapse& r, RunEnd end, std::uint64_t collisions,
                             const std::string& at_wall) {
   std::string text =
@@ -103,12 +105,9 @@ Group collapse_table(const ReportedCollapse& r) {
           {}};
 }
 
-namespace {
-
 // Whether the scene asks for averages over many collisions, to which the order of single ones does not matter.
 bool measures_averages(const Scene& scene) {
-  const auto rows = measurement_rows();
-  return std::any_of(rows.begin(), rows.end(), [&](const MeasurementRow* row) {
+  return std::ranges::any_of(measurement_rows(), [&](const MeasurementRow* row) {
     return row->of_many_collisions && !row->tables_at_end(scene).empty();
   });
 }
@@ -122,8 +121,7 @@ std::string apart(const Scene& scene) {
              : "where that matters, give unequal distances, by initial.perturbation or initial.positions = \"poisson\"";
 }
 
-}  // namespace
-
+// The text for standard error; empty if everything was resolved.
 std::string account_warning(const ReportedAccount& account, const Scene& scene) {
   const Run& run = scene.run;
   std::string text;
@@ -158,6 +156,74 @@ std::string account_warning(const ReportedAccount& account, const Scene& scene) 
                         account.first_uncertain.time.text(), place(account.first_uncertain.particle));
   return text;
 }
+
+// The warning when time or a gap cannot get smaller.
+std::string exhausted_warning(const std::string& time, std::uint64_t collisions, const Scene& scene) {
+  const Run& run = scene.run;
+  const bool stops = run.collapse == scene::CollapsePolicy::stop, cut_off = scene.law.cutoff > Decimal("0");
+  const std::string floor = collapsing_floor(scene);
+  std::string remedies = run.coordinates == Coordinates::absolute ? "run.coordinates = \"gaps\", " : "";
+  if (!floor.empty())
+    remedies += fmt::format("{}.rest_speed, a speed below which particles stay on this wall, ", floor);
+  remedies += cut_off ? "a higher law.cutoff, or none, with which a run ends at a collapse" : "a law.cutoff";
+  if (!cut_off && !run.stop_gap)
+    remedies += stops ? ", or run.stop_gap to end there" : ", or run.collapse = \"stop\" to end there";
+  // On a floor no number of digits is enough.
+  if (floor.empty())
+    remedies += run.precision == Precision::mpfr
+                    ? ", or more digits (run.digits)"
+                    : ", or more digits (run.precision; long double reaches gaps of 1e-4932, mpfr any)";
+  return fmt::format("resolution exhausted (t = {}, {} collisions): time or a gap can get no smaller in {}{}; use {}\n",
+                     time, collisions, precision_name(run),
+                     stops ? ", and that this is an inelastic collapse is not proved" : "", remedies);
+}
+
+// How a run ended, from the engine's status; `order_lost` is from the account.
+RunEnd end_of(Status status, bool order_lost) {
+  switch (status) {
+  case Status::reached:
+    break;
+  case Status::collapsed:
+    return RunEnd::collapsed;
+  case Status::exhausted:
+    return RunEnd::exhausted;
+  case Status::interrupted:
+    return RunEnd::interrupted;
+  }
+  return order_lost ? RunEnd::order_lost : RunEnd::reached;
+}
+
+// About how many digits of the energy at the end are right. C collisions of N particles each round a speed by eps,
+// together by eps sqrt(1 + C/N), and change the energy by twice that. If the chain holds closing speeds, the error is
+// relative to the present ones; if it holds velocities, to those at the start. Where collisions make errors grow, only
+// an engine that watches them knows by how much.
+double energy_digits(const Scene& scene, const AnyEngine& engine, const Moment& now) {
+  const double at_start = now.energy_at_start().value, at_end = now.state().energy.value;
+  const auto active = static_cast<double>(std::max<ParticleIndex>(engine.collided_particles(), 1));
+  const auto epsilon = in_precision<double>(scene, []<class T>(std::type_identity<T>) {
+    return to_double(T(std::numeric_limits<T>::epsilon()));  // 0 beyond the range of double
+  });
+  const double held = epsilon > 0 ? -std::log10(epsilon) : static_cast<double>(scene.run.digits);
+  double error = 2 * std::sqrt(1 + static_cast<double>(engine.counts().collisions) / active);
+  const bool velocities = scene.run.coordinates == Coordinates::absolute || particles_merge(scene);
+  if (velocities && at_end > 0) error *= std::sqrt(std::max(1., at_start / at_end));
+  const double digits = held - std::log10(error);
+  const std::optional<double> off = at_end > 0 ? now.energy_deviation(at_end) : std::nullopt;
+  return std::max(0., off ? std::min(digits, -std::log10(*off)) : digits);
+}
+
+// If rounding may move a collision across the end of a run, it may be the last one, which should not have been made, or
+// one that should have come at any time after it; without a last one, at any time of the run. The double is not later
+// than that.
+double before_last_collision(const Scene& scene, const AnyEngine& engine) {
+  const Decimal& start = scene.run.start;
+  const bool none = engine.counts().collisions == 0;
+  if (none && !(from_text<bin_float>(start.text) < bin_float(start.value))) return start.value;
+  return std::nextafter(none ? start.value : engine.last_collision_time().value,
+                        -std::numeric_limits<double>::infinity());
+}
+
+}  // namespace
 
 std::string guard_message(const ReportedGuard& g, const ReportedAccount& account, const Run& run) {
   const char* what = "";
@@ -195,24 +261,39 @@ std::string guard_message(const ReportedGuard& g, const ReportedAccount& account
                   "before; if it stops here again, please report the scene";
 }
 
-std::string exhausted_warning(const std::string& time, std::uint64_t collisions, const Scene& scene) {
-  const Run& run = scene.run;
-  const bool stops = run.collapse == scene::CollapsePolicy::stop, cut_off = scene.law.cutoff > Decimal("0");
+RunEnding::RunEnding(const Scene& scene, const AnyEngine& engine, const Moment& now, Status status) {
+  const Counts& counts = engine.counts();
+  ReportedAccount account = engine.account();
+  const auto found = status == Status::collapsed ? std::optional(engine.collapse()) : std::nullopt;
+  outcome.end = end_of(status, account.order_lost > 0);
+  if (found && !found->settled) outcome.end = scene.run.stop_gap ? RunEnd::small_gap : RunEnd::unproved;
+  outcome.collisions = counts.collisions;
+  outcome.merges = counts.merges;
+  outcome.time = now.time.meant.value;
+  outcome.energy = now.state().energy.value;
+  outcome.energy_digits = energy_digits(scene, engine, now);
+  if (const auto particle = now.uncertain(); particle && !account.uncertain && status == Status::reached) {
+    account.uncertain_end = true;
+    account.first_uncertain = {now.time.meant, 0, *particle};
+  }
+  outcome.warning = account_warning(account, scene);
+  if (status == Status::exhausted)
+    outcome.warning += exhausted_warning(now.time.exact.text(), counts.collisions, scene);
+  attributes = {{"simultaneous_collisions", account.simultaneous},
+                {"order_lost", account.order_lost},
+                {"unresolved_gaps", account.unresolved},
+                {"energy_digits", outcome.energy_digits},
+                {"ledger_error", now.ledger_error()}};
+  if (account.uncertain || account.uncertain_end)
+    attributes.emplace_back("uncertain_from", account.uncertain_end ? before_last_collision(scene, engine)
+                                                                    : account.first_uncertain.time.value);
+  if (!found) return;
   const std::string floor = collapsing_floor(scene);
-  std::string remedies = run.coordinates == Coordinates::absolute ? "run.coordinates = \"gaps\", " : "";
-  if (!floor.empty())
-    remedies += fmt::format("{}.rest_speed, a speed below which particles stay on this wall, ", floor);
-  remedies += cut_off ? "a higher law.cutoff, or none, with which a run ends at a collapse" : "a law.cutoff";
-  if (!cut_off && !run.stop_gap)
-    remedies += stops ? ", or run.stop_gap to end there" : ", or run.collapse = \"stop\" to end there";
-  // On a floor no number of digits is enough.
-  if (floor.empty())
-    remedies += run.precision == Precision::mpfr
-                    ? ", or more digits (run.digits)"
-                    : ", or more digits (run.precision; long double reaches gaps of 1e-4932, mpfr any)";
-  return fmt::format("resolution exhausted (t = {}, {} collisions): time or a gap can get no smaller in {}{}; use {}\n",
-                     time, collisions, precision_name(run),
-                     stops ? ", and that this is an inelastic collapse is not proved" : "", remedies);
+  const bool on_floor =
+      floor == "walls.left" ? found->particle < 0 : floor == "walls.right" && found->particle + 1 == engine.particles();
+  outcome.report = collapse_report(*found, outcome.end, outcome.collisions, on_floor ? floor : "");
+  outcome.collapse_time = (found->settled ? found->time : found->last_collision).text();
+  collapse = collapse_table(*found);
 }
 
 }  // namespace cradle::tools

@@ -1,28 +1,25 @@
-// What a run prints at its end: the collapse that stopped it, and what it could not resolve.
+// What a run says at its end, and how it ends: its outcome, with the collapse that stopped it and the warnings that its
+// account gives rise to, and the attributes of its result.
 #pragma once
 
-#include <cstdint>
+#include <optional>
 #include <string>
+#include <vector>
 
-#include "cradle/tools/engines/reported.hpp"
-#include "cradle/tools/result/result.hpp"
-#include "cradle/tools/run/ends.hpp"
-#include "cradle/tools/scene/scene.hpp"
+#include "cradle/tools/engines/any_engine.hpp"
+#include "cradle/tools/run/run.hpp"
 
 namespace cradle::tools {
 
-/// The text for standard output; times have all digits that are known.
-/// `at_wall`: the wall on which it was, if it can hold particles.
-std::string collapse_report(const ReportedCollapse& collapse, RunEnd end, std::uint64_t collisions,
-                            const std::string& at_wall);
-Group collapse_table(const ReportedCollapse& collapse);
+struct RunEnding {
+  RunOutcome outcome;
+  std::vector<Attribute> attributes;
+  std::optional<Group> collapse;
+
+  RunEnding(const Scene& scene, const AnyEngine& engine, const Moment& now, Status status);
+};
 
 /// The message of a guard that stops a run. What positions may not have resolved is not the machine's fault.
 std::string guard_message(const ReportedGuard& guard, const ReportedAccount& account, const Run& run);
-
-/// The text for standard error; empty if everything was resolved.
-std::string account_warning(const ReportedAccount& account, const Scene& scene);
-/// The warning when time or a gap cannot get smaller.
-std::string exhausted_warning(const std::string& time, std::uint64_t collisions, const Scene& scene);
 
 }  // namespace cradle::tools

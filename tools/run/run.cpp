@@ -17,20 +17,6 @@ namespace {
 
 }  // namespace
 
-RunEnd end_of(Status status, bool order_lost) {
-  switch (status) {
-  case Status::reached:
-    break;
-  case Status::collapsed:
-    return RunEnd::collapsed;
-  case Status::exhausted:
-    return RunEnd::exhausted;
-  case Status::interrupted:
-    return RunEnd::interrupted;
-  }
-  return order_lost ? RunEnd::order_lost : RunEnd::reached;
-}
-
 std::vector<Attribute> provenance(const Scene& scene, const std::string& precision, std::string_view outcome) {
   return {{"format_version", format_version}, {"cradle_version", std::string(version)},
           {"scene", effective_toml(scene)},   {"name", scene.name},

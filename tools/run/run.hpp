@@ -21,9 +21,6 @@
 
 namespace cradle::tools {
 
-/// How a run ended, from the engine's status; `order_lost` is from the account.
-RunEnd end_of(Status status, bool order_lost);
-
 struct RunOptions {
   Progress::Show progress = Progress::Show::on_terminal;
   RunObserver* observer = nullptr;  // is notified of every collision

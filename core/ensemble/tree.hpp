@@ -22,11 +22,12 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <stdexcept>
+#include <string>
 #include <tuple>
 #include <utility>
 #include <vector>
 
-#include "cradle/core/base/require.hpp"
 #include "cradle/core/ensemble/moments.hpp"
 
 namespace cradle {
@@ -61,8 +62,9 @@ class MomentTree {
   /// Adds a node from another set. Throws std::invalid_argument if the sets share replicas, if no tree has such a node,
   /// or if its vectors have another length.
   void add(TreeNode node) {
-    require(node.level <= 62 && node.first >> 63 == 0 && (node.first & (node.range().count - 1)) == 0,
-            "no node of the tree of replicas: index ", node.first, ", level ", node.level);
+    if (node.level > 62 || node.first >> 63 || (node.first & (node.range().count - 1)) != 0)
+      throw std::invalid_argument("no node of the tree of replicas: index " + std::to_string(node.first) + ", level " +
+                                  std::to_string(node.level));
     std::optional<Siblings> siblings = keep(std::move(node));
     // Combining two nodes is slow, so it is done outside the lock; until it is done readers see the two nodes.
     while (siblings) siblings = replace(*siblings, combine(*siblings->lower, *siblings->upper));
@@ -131,12 +133,14 @@ class MomentTree {
 
   std::optional<Siblings> keep(TreeNode node) {
     const std::scoped_lock lock(mutex_);
-    require(!holds_some_of(node.range()), "replicas ", node.first, " to ", node.range().end() - 1,
-            ": some of them are there already");
+    if (holds_some_of(node.range()))
+      throw std::invalid_argument("replicas " + std::to_string(node.first) + " to " +
+                                  std::to_string(node.range().end() - 1) + ": some of them are there already");
     if (node.moments.replicas > 0) {
-      const std::size_t entries = node.moments.entries(), before = entries_.value_or(entries);
-      require(before == entries, "statistics of vectors of different lengths (", before, " and ", entries, " numbers)");
-      entries_ = entries;
+      if (entries_.value_or(node.moments.entries()) != node.moments.entries())
+        throw std::invalid_argument("statistics of vectors of different lengths (" + std::to_string(*entries_) +
+                                    " and " + std::to_string(node.moments.entries()) + " numbers)");
+      entries_ = node.moments.entries();
     }
     return hold(node.first, node.level, std::move(node.moments));
   }

@@ -39,8 +39,8 @@ struct Column {
 
 /// A number for each row: what `of`, a function or a member, gives for it.
 template <class Rows, class Of> auto numbers_of(const Rows& rows, Of of) {
-  using Number = std::remove_cvref_t<decltype(std::invoke(of, *rows.begin()))>;
-  std::vector<std::conditional_t<std::is_integral_v<Number>, std::uint64_t, Number>> numbers;
+  using Given = std::remove_cvref_t<decltype(std::invoke(of, *rows.begin()))>;
+  std::vector<std::conditional_t<std::is_integral_v<Given>, std::uint64_t, Given>> numbers;
   for (const auto& row : rows) numbers.push_back(std::invoke(of, row));
   return numbers;
 }

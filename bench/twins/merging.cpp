@@ -59,7 +59,6 @@ void MergingEngine::advance(double until) {
       heap_.update(j, due(j, time));
       heap_.update(i, due(i, time));
     } else {
-      ++merges_;
       left.v = centre;
       left.m += right.m;
       left.right = right.right;

@@ -16,7 +16,6 @@ class MergingEngine {
   void advance(double until);
 
   std::uint64_t collisions() const { return collisions_; }
-  std::uint64_t merges() const { return merges_; }
 
  private:
   struct Particle {
@@ -30,7 +29,7 @@ class MergingEngine {
   double loss_, circumference_;
   std::vector<Particle> particles_;
   IndexedHeap heap_;
-  std::uint64_t collisions_ = 0, merges_ = 0;
+  std::uint64_t collisions_ = 0;
 };
 
 }  // namespace twins

@@ -1,6 +1,7 @@
 // Wrong input has the answers that stand in messages.txt: one message, with file, line and key, and nothing else is
-// left behind. Keys, commands and options that messages and help name exist: every key is in the table of keys, every
-// command is one of the program's, and its options are options of that command.
+// left behind. Commands print what stands in outputs.txt. Keys, commands and options that messages and help name exist:
+// every key is in the table of keys, every command is one of the program's, and its options are options of that
+// command.
 #include <algorithm>
 #include <iterator>
 #include <map>
@@ -19,11 +20,18 @@ namespace cradle::tests::messages_test {
 using Names = std::set<std::string>;
 using Lines = std::vector<std::string>;
 
+struct Command {
+  std::string typed;
+  int status;
+  Lines printed;  // each with its kind before it, as in outputs.txt
+};
+
 struct Input {
-  std::size_t line;  // of messages.txt
+  std::size_t line;  // of the table
   std::map<std::string, Lines> files;
-  Lines settings, before;  // before: commands that succeed
-  std::string command, message;
+  Lines settings;
+  std::vector<Command> commands;
+  std::string message;
   int status;
 
   std::string text(const std::string& file) const {
@@ -40,27 +48,35 @@ struct Inputs {
 
 void PrintTo(const Inputs& inputs, std::ostream* stream) { *stream << inputs.name; }
 
-// Reads messages.txt, whose head describes its form.
+// Reads messages.txt or outputs.txt, whose heads describe their form.
 class Table {
  public:
-  Table() {
-    std::ifstream file(test::source_folder + "/tests/tools/messages.txt");
+  explicit Table(const std::string& name) {
+    std::ifstream file(test::source_folder + "/tests/tools/" + name);
     Lines input;
     for (std::string text; next(file, text);) {
-      if (text.starts_with("## "))
+      if (text.starts_with("## ")) {
         groups.push_back({text.substr(3), {}});
-      else if (text.starts_with("=>"))
-        add(std::move(input), text, file), input.clear();
-      else if (text.starts_with('@') && text.ends_with(" ="))
+      } else if (text.starts_with("=>")) {
+        add(input, text), input.clear();
+        for (const std::string& more : until_blank(file)) groups.back().all.back().message += more.substr(2);
+      } else if (text.empty() && std::ranges::any_of(input, is_command)) {
+        add(input, "=> [0]"), input.clear();
+      } else if (text.starts_with('@') && text.ends_with(" =")) {
         texts_[text.substr(0, text.size() - 2)] = until_blank(file);
-      else if (!input.empty() || !(text.empty() || text.starts_with('#')))
+      } else if (!input.empty() || !(text.empty() || text.starts_with('#'))) {
         input.push_back(text);
+      }
     }
-    if (!input.empty()) throw std::logic_error("messages.txt ends in an input without a message");
+    if (std::ranges::any_of(input, is_command))
+      add(input, "=> [0]");
+    else if (!input.empty())
+      throw std::logic_error(name + " ends in an input without an answer");
   }
   std::vector<Inputs> groups;
 
  private:
+  static bool is_command(const std::string& line) { return line.starts_with("$ "); }
   bool next(std::istream& file, std::string& text) { return ++line_, static_cast<bool>(std::getline(file, text)); }
   Lines until_blank(std::istream& file) {
     Lines lines;
@@ -77,18 +93,19 @@ class Table {
     return whole;
   }
 
-  void add(Lines lines, const std::string& answer, std::istream& file) {
-    static const std::regex form("=>(?: \\[([0-9])\\])?(?: (.*))?"), replacement("([0-9]+): ?(.*)");
+  void add(const Lines& lines, const std::string& answer) {
+    static const std::regex form("=>(?: \\[([0-9])\\])?(?: (.*))?"), replacement("([0-9]+): ?(.*)"),
+        command("\\$ (?:\\[([0-9]+)\\] )?(.*)");
     std::smatch match;
     std::regex_match(answer, match, form);
-    Input input{line_, {}, {}, {}, {}, match[2], match[1].matched ? std::stoi(match[1]) : 2};
-    for (const std::string& more : until_blank(file)) input.message += more.substr(2);
+    Input input{line_, {}, {}, {}, match[2], match[1].matched ? std::stoi(match[1]) : 2};
     std::string name = "s.toml";
     std::set<std::size_t> replaced;
     for (const std::string& line : with_texts(lines)) {
-      if (line.starts_with("$ ")) {
-        if (!input.command.empty()) input.before.push_back(input.command);
-        input.command = line.substr(2);
+      if (std::regex_match(line, match, command)) {
+        input.commands.push_back({match[2], match[1].matched ? std::stoi(match[1]) : 0, {}});
+      } else if (!input.commands.empty()) {
+        input.commands.back().printed.push_back(line);
       } else if (line.starts_with("--- ")) {
         input.files[name = line.substr(4)];
       } else if (line.starts_with("--set ")) {
@@ -138,17 +155,36 @@ class Answers : public ProgramTest, public testing::WithParamInterface<Inputs> {
     }
   }
 
-  // The message of a refusal, which is all that it prints and leaves behind.
-  std::string of_command(const Input& input) const {
+  // A command and what it prints.
+  void try_out(const Command& command) const {
+    const Printed printed = shell(command.typed, command.status);
+    for (const std::string& line : command.printed) {
+      const std::string text = line.substr(2);
+      if (line.starts_with("+ "))
+        EXPECT_TRUE(has(printed.out, text)) << command.typed;
+      else if (line.starts_with("- "))
+        EXPECT_FALSE(has(printed.out, text)) << command.typed;
+      else if (line.starts_with("= "))
+        EXPECT_TRUE(has("\n" + printed.out, "\n" + text + "\n")) << command.typed;
+      else if (line.starts_with("! "))
+        EXPECT_TRUE(has(printed.err, text)) << command.typed;
+      else
+        ADD_FAILURE() << "neither a command nor what it prints: " << line;
+    }
+  }
+
+  // The message of a refusal, which is all that it prints and leaves behind; nothing where all commands succeed.
+  std::string of_commands(const Input& input) const {
     for (const auto& entry : std::filesystem::directory_iterator(folder)) std::filesystem::remove_all(entry);
     for (const auto& [name, lines] : input.files) {
       std::filesystem::create_directories((folder / name).parent_path());
       write(name, input.text(name));
     }
-    for (const std::string& command : input.before) shell(command, 0);
+    std::for_each(input.commands.begin(), std::prev(input.commands.end()), [&](const auto& one) { try_out(one); });
+    const Command& last = input.commands.back();
+    if (input.status == 0) return try_out(last), "";
     const auto before = files();
-    const Printed printed = shell(input.command, input.status);
-    if (input.status == 0) return "";
+    const Printed printed = shell(last.typed, input.status);
     EXPECT_TRUE(files() == before) << "a file was made or changed";
     EXPECT_TRUE(begins(printed.err, "cradle: "));
     EXPECT_EQ(std::ranges::count(printed.err, '\n'), 1) << printed.err;
@@ -158,8 +194,8 @@ class Answers : public ProgramTest, public testing::WithParamInterface<Inputs> {
 
 TEST_P(Answers, AreThoseOfTheTable) {
   for (const Input& input : GetParam().all) {
-    SCOPED_TRACE("messages.txt:" + std::to_string(input.line));
-    const std::string found = input.command.empty() ? of_reading(input) : of_command(input), wanted = input.message;
+    SCOPED_TRACE("line " + std::to_string(input.line));
+    const std::string found = input.commands.empty() ? of_reading(input) : of_commands(input), wanted = input.message;
     if (wanted.ends_with("..."))
       EXPECT_TRUE(begins(found, wanted.substr(0, wanted.size() - 3)));
     else
@@ -167,8 +203,9 @@ TEST_P(Answers, AreThoseOfTheTable) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Input, Answers, testing::ValuesIn(Table().groups),
-                         [](const auto& inputs) { return inputs.param.name; });
+constexpr auto name_of = [](const auto& inputs) { return inputs.param.name; };
+INSTANTIATE_TEST_SUITE_P(Input, Answers, testing::ValuesIn(Table("messages.txt").groups), name_of);
+INSTANTIATE_TEST_SUITE_P(Output, Answers, testing::ValuesIn(Table("outputs.txt").groups), name_of);
 
 // The texts between quotes in a source of the program, those that follow each other as one.
 std::string texts(const std::string& source) {

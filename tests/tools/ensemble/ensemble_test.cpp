@@ -139,8 +139,6 @@ TEST_F(Ensembles, ValuesAreCountedInBinsWhereRequested) {
   EXPECT_NEAR(numbers(all, "ensemble/spread/series/energy", "quantile_50").back(), energies[25], 0.01);
   EXPECT_EQ(shell("cradle ensemble shock.toml --replicas 60 -o a.h5").status, 2)
       << "without the bins: another ensemble";
-  shell("cradle ensemble shock.toml --replicas 60 --spread enrgy=0:1:2 -o e.h5", 2);
-  shell("cradle ensemble shock.toml --replicas 60 --spread energy=0:1 -o e.h5", 2);
 }
 
 TEST_F(Ensembles, FailedReplicasAreListedAndHarmNoOther) {
@@ -211,18 +209,6 @@ TEST_F(Ensembles, NumbersOfWholeRunsAreColumnsOfTheTable) {
   const RunOutcome alone = tools::run_scene(replica, {tools::ProgressLine::Show::never});
   EXPECT_EQ(numbers(read("a.h5"), "replicas", "energy")[1], alone.energy);
   for (const auto& [name, value] : alone.summary) EXPECT_EQ(numbers(read("a.h5"), "replicas", name)[1], value);
-}
-
-TEST_F(Ensembles, InfoPrintsWhatFilesAndJournalsHold) {
-  run("ensemble shock.toml --replicas 3 -o a.h5");
-  const Printed file = shell("cradle info a.h5");
-  for (const auto* text :
-       {"3 reached the end", "law.restitution = 0.99", "/replicas", "max of energy, energy_lost, collisions"})
-    EXPECT_TRUE(has(file.out, text));
-  EXPECT_FALSE(has(file.out, "ensemble/nodes")) << "only with --all";
-  shell(until_journalled("b.h5", "KILL"), 137);
-  const Printed journal = shell("cradle info b.h5.part", 0);
-  for (const auto* text : {" replicas finished", "law.restitution = 0.99"}) EXPECT_TRUE(has(journal.out, text));
 }
 
 }  // namespace cradle::tests::ensemble_test

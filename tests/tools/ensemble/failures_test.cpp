@@ -87,26 +87,4 @@ TEST_F(Failures, ManyAreCountedAndFoundInTheFile) {
   EXPECT_TRUE(has(made.err, " more: see /replicas/failed in e.h5\n"));
 }
 
-// U6 of a list: no replica differs from another.
-TEST_F(Failures, ReplicasThatAreAllTheSameAreSaid) {
-  const auto said = [&](const std::string& command) {
-    const Printed made = shell("cradle " + command + " --quiet -o it.h5; rm it.h5");
-    return made.err;
-  };
-  const std::string ensemble = "ensemble coarse.toml --set run.until=1 ", none = "--set initial.perturbation=0 ";
-  EXPECT_EQ(said(ensemble + none + "--replicas 3"),
-            "nothing is random in coarse: all 3 replicas are the same run; give initial.perturbation, or --replicas "
-            "1\n");
-  EXPECT_EQ(said(ensemble + none + "--replicas 1"), "");
-  EXPECT_EQ(said(ensemble + "--replicas 3"), "");
-  EXPECT_EQ(said("sweep coarse.toml --set run.until=1 --vary initial.perturbation=0,0.1 --replicas 2"),
-            "nothing is random in points/0000: all 2 replicas are the same run; give initial.perturbation, or "
-            "--replicas 1\n");
-  for (const char* scene : {"classics/domino --set run.until=3", "fig9 --set run.until=1", "fig5"})
-    EXPECT_TRUE(begins(said(std::string("ensemble ") + scene + " --replicas 2"), "nothing is random in ")) << scene;
-  for (const char* scene : {"cooling --set initial.particles=9", "classics/heat_wall --set initial.perturbation=0",
-                            "classics/blast --set output.profiles.range=[-8,8] --set initial.particles=40"})
-    EXPECT_EQ(said(std::string("ensemble ") + scene + " --set run.until=1 --replicas 2"), "") << scene;
-}
-
 }  // namespace cradle::tests::failures_test

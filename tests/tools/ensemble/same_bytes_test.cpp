@@ -1,5 +1,5 @@
 // An ensemble gives the same file for any history: on any number of threads, continued, split and merged, interrupted,
-// killed, with damaged or left-over journals.
+// killed, with damaged or left-over journals. (What is refused: tests/tools/messages.txt.)
 
 #include "cradle/tests/tools/ensemble/ensembles.hpp"
 #include "cradle/tools/ensemble/ensemble.hpp"
@@ -21,21 +21,6 @@ TEST_F(Ensembles, SameBytesForAnyHistory) {
                               7);
 }
 
-TEST_F(Ensembles, MoreReplicasAreAddedToAFinishedFile) {
-  run("ensemble shock.toml --replicas 60 -o whole.h5");
-  run("ensemble shock.toml --replicas 13 -o grown.h5");
-  const Printed more = shell("cradle ensemble shock.toml --replicas 60 -o grown.h5");
-  EXPECT_TRUE(has(more.out, "47 of them now"));
-  expect_same("whole.h5", "grown.h5");
-  const Printed nothing = shell("cradle ensemble shock.toml --replicas 60 -o grown.h5", 0);
-  EXPECT_TRUE(has(nothing.out, "nothing to do"));
-  expect_same("whole.h5", "grown.h5");
-  EXPECT_FALSE(exists("grown.h5.part"));
-  const Printed overlap = shell("cradle merge whole.h5 grown.h5 -o d.h5", 2);
-  EXPECT_TRUE(has(overlap.err, "grown.h5: has replicas that another of the files has too"));
-  EXPECT_FALSE(exists("d.h5"));
-}
-
 TEST_F(Ensembles, KilledAndContinuedIsTheSameAsInOneGo) {
   for (int kill = 0; kill < 3; ++kill) {
     shell(until_journalled("killed.h5", "KILL"), 137);
@@ -46,6 +31,14 @@ TEST_F(Ensembles, KilledAndContinuedIsTheSameAsInOneGo) {
   const Printed go_on = expect_continued("killed.h5");
   EXPECT_TRUE(has(go_on.err, "killed.h5.part: ")) << "says what it took from there";
   EXPECT_FALSE(has(go_on.out, all + " of them now")) << "not all of them again";
+}
+
+TEST_F(Ensembles, AJournalSaysWhatItHoldsAndIsNoOtherScenes) {
+  shell(until_journalled("a.h5", "KILL"), 137);
+  const Printed journal = shell("cradle info a.h5.part", 0);
+  for (const auto* text : {" replicas finished", "law.restitution = 0.99"}) EXPECT_TRUE(has(journal.out, text));
+  const Printed other = shell("cradle ensemble shock.toml --set law.cutoff=1e-4 --replicas 5 -o a.h5", 2);
+  EXPECT_TRUE(has(other.err, "a.h5.part: holds ensembles of something else (found law.cutoff = 1e-5, here 1e-4)"));
 }
 
 TEST_F(Ensembles, InterruptedLeavesItsReplicasInTheJournal) {

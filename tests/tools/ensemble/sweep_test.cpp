@@ -101,14 +101,4 @@ TEST_F(SweepCommand, TableIsTheMeanOfTheRuns) {
   shell("cradle sweep " + scene + "--vary law.los=0.01,0.03 --quiet -o other.h5", 2);
 }
 
-TEST_F(SweepCommand, IsMergedWithOtherReplicasOfItselfOnly) {
-  const std::string scene = " fig7 --set initial.particles=200 --set run.until=30 --set output.zone.from=20 --quiet ";
-  const std::string sweep = "cradle sweep" + scene + "--vary law.loss=0.01,0.02,0.03 ";
-  shell(sweep + "--replicas 3 -o a.h5", 0);
-  shell(sweep + "--first 2 --replicas 2 -o b.h5", 0);
-  EXPECT_EQ(shell("cradle merge a.h5 b.h5 -o c.h5").status, 2) << "replicas in common";
-  shell("cradle ensemble" + scene + "--first 7 --replicas 2 -o e.h5", 0);
-  EXPECT_EQ(shell("cradle merge a.h5 e.h5 -o c.h5").status, 2) << "an ensemble is no sweep";
-}
-
 }  // namespace cradle::tests::sweep_test

@@ -122,29 +122,4 @@ TEST_F(Overwriting, PicturesAndPagesOfOtherFilesStay) {
   }
 }
 
-TEST_F(Overwriting, AnExportLeavesNothingOfTheOneBefore) {
-  shell("cradle run s.toml && cradle export s.h5 --to csv", 0);
-  EXPECT_TRUE(exists("csv/snapshots/0001.csv"));
-  write("csv/mine.csv", "x,v\n");
-  shell("cradle run s.toml --force --set output.snapshots=[1] && cradle export s.h5 --to csv", 0);
-  EXPECT_TRUE(exists("csv/snapshots/0000.csv"));
-  EXPECT_FALSE(exists("csv/snapshots/0001.csv"));
-  EXPECT_TRUE(exists("csv/mine.csv"));
-  shell("cp s.h5 t.h5", 0);
-  const Printed refused = shell("cradle export t.h5 --to csv", 2);
-  EXPECT_TRUE(has(refused.err, "csv: a folder with other files (found exported from s.h5): ")) << refused.err;
-  shell("cradle export t.h5 --to csv --force", 0);
-  shell("mkdir own && echo mine >own/series.csv", 0);
-  EXPECT_TRUE(has(shell("cradle export t.h5 --to own", 2).err, "(found series.csv)"));
-  EXPECT_EQ(contents(folder / "own/series.csv"), "mine\n");
-  // What a list of files names outside of its folder is not touched.
-  write("keep.csv", "mine");
-  write("csv/files.txt", "exported from t.h5\n../keep.csv\n/etc/hostname\nsnapshots/0000.csv\n");
-  shell("cradle export t.h5 --to csv", 0);
-  EXPECT_TRUE(exists("keep.csv"));
-  shell("cradle export t.h5 --result copy.h5 && cradle export t.h5 --result copy.h5", 0);
-  shell("cradle run s.toml -o copy.h5 --force", 0);
-  refused_and_forced("export t.h5 --result copy.h5", "copy.h5", "holds a result of other settings");
-}
-
 }  // namespace cradle::tests::overwrite_test

@@ -150,19 +150,6 @@ TEST_F(Files, ARunThatIsNotFinishedIsNotThrownAwayByAnother) {
   EXPECT_FALSE(exists("a.h5.part"));
 }
 
-// A run of less than ten seconds, or than the time between two checkpoints, leaves no checkpoint, even if one was
-// written during the run; however quick the machine is, the second one takes longer than a nanosecond.
-TEST_F(Files, ACheckpointStaysOnlyBesideARunThatTookLong) {
-  const std::string small = "cradle run fig2 --quiet --set initial.particles=20 --set run.until=5 --set "
-                            "output.snapshots=[] --set output.profiles.times=[] -o a.h5 ";
-  shell(small + "--set output.checkpoint.every_seconds=1e-9", 0);
-  EXPECT_TRUE(exists("a.h5.checkpoint"));
-  { RunFiles again(path("a.h5"), std::optional<std::string>("6")); }  // extends it from there
-  std::filesystem::remove(folder / "a.h5.part");
-  shell(small + "--set output.checkpoint.every_seconds=3600 --force", 0);
-  EXPECT_FALSE(exists("a.h5.checkpoint"));
-}
-
 // A number of the state that has changed, as memory without error correction does it: nothing of the file is damaged,
 // but the run that continues from it cannot be.
 TEST_F(Files, AGuardStopsARunWhoseStateIsWrong) {

@@ -1,9 +1,7 @@
-// `cradle threshold`: values at which outcomes change that are known in closed form, decisions in rationals beside
-// runs, and continuation to the last byte. (What is refused: tests/tools/messages.txt.)
+// `cradle threshold`: decisions in rationals beside runs, and continuation to the last byte. (Values at which outcomes
+// change that are known in closed form: tests/tools/outputs.txt. What is refused: tests/tools/messages.txt.)
 
-#include <cmath>
 #include <cstdint>
-#include <numbers>
 #include <random>
 #include <string>
 #include <vector>
@@ -103,95 +101,15 @@ TEST(ExactCollapse, LeavesOtherScenesOpen) {
   EXPECT_FALSE(decided("0.05", "[0, 1, 3]", {"gravity.acceleration=1"}));
 }
 
-class ThresholdCommand : public ProgramTest {
- protected:
-  std::string end(const std::string& file, const std::string& name) const {
-    return tools::attribute<std::string>(read(file).find("threshold")->attributes, name, file);
-  }
-  double value(const std::string& file) const {
-    return tools::attribute<double>(read(file).find("threshold")->attributes, "low", file);
-  }
-  std::uint64_t proved(const std::string& file, const std::string& name) const {
-    return tools::attribute<std::uint64_t>(read(file).find("threshold")->attributes, name + "_proved", file);
-  }
-};
-
-TEST_F(ThresholdCommand, ProvesTheCollapseOfThreeParticlesToThirtyDigits) {
-  const Printed printed = shell("cradle threshold collapse3 --vary law.restitution=0.05:0.1 --digits 30 -o a.h5", 0);
-  EXPECT_EQ(end("a.h5", "low_digits"), "0.071796769724490825890214633976") << "7 - 4 sqrt(3)";
-  EXPECT_EQ(end("a.h5", "high_digits"), "0.071796769724490825890214633977");
-  EXPECT_EQ(end("a.h5", "low_outcome"), "inelastic collapse");
-  EXPECT_EQ(proved("a.h5", "low"), 1U);
-  EXPECT_EQ(proved("a.h5", "high"), 1U);
-  EXPECT_TRUE(has(printed.out, "The outcome changes in between: proved")) << printed.out;
-  shell("cradle threshold collapse3 --vary law.restitution=0.2:0.3 --set 'initial.m=[4, 1, 4]' -o b.h5", 0);
-  EXPECT_EQ(end("b.h5", "low_digits"), "0.25") << "masses 4, 1, 4";
-}
-
-// A particle of mass 1 between a wall and one of mass M makes as many collisions as pi holds the angle atan(1/sqrt M)
-// (Galperin 2003): 31 for M = 100, and one more from M = cot^2(pi/32) on. In double the speeds of 31 collisions are
-// right to 31 roundings, so the value is to some 1e-14 of itself; the last digit is 1e-9.
-const std::string galperin =
-    " --outcome collisions --set law.type=inelastic --set law.restitution=1 --set initial.type=list --set "
-    "'initial.x=[1, 2]' --set 'initial.v=[0, -1]' --set 'initial.m=[1, 100]' --set walls.left.position=0 --set "
-    "run.until=1e30 --set output.events=false --set run.collapse= --set run.stop_gap= ";
-
-TEST_F(ThresholdCommand, FindsACountOfCollisions) {
-  shell("cradle threshold collapse3 --vary 'initial.m[1]=100:110'" + galperin + "-o a.h5", 0);
-  const double known = std::pow(std::tan(std::numbers::pi / 32), -2);
-  EXPECT_NEAR(value("a.h5"), known, 1e-9);
-  EXPECT_EQ(end("a.h5", "low_outcome"), "31 collisions");
-  EXPECT_EQ(end("a.h5", "high_outcome"), "32 collisions");
-}
-
-// Three particles without collapse: their collisions are proved, in double and in wide types.
-TEST_F(ThresholdCommand, ProvesCountsOfCollisions) {
-  for (const char* digits : {"12", "20"}) {
-    shell(std::string("cradle threshold collapse3 --outcome collisions --vary law.restitution=0.08:0.2 --set "
-                      "run.until=100 -o a.h5 --force --digits ") +
-              digits,
-          0);
-    EXPECT_EQ(proved("a.h5", "low"), 1U) << end("a.h5", "low_how");
-    EXPECT_EQ(proved("a.h5", "high"), 1U) << end("a.h5", "high_how");
-    EXPECT_EQ(end("a.h5", "low_outcome"), "11 collisions");
-    EXPECT_EQ(end("a.h5", "high_outcome"), "10 collisions");
-  }
-}
-
-// Two wet particles of masses 1 and 2 that meet at speed 1 have mu w^2/2 = 1/3.
-TEST_F(ThresholdCommand, FindsWhetherWetParticlesPass) {
-  write("pair.toml", "[law]\ntype = 'wet'\nloss = 0.1\n[initial]\ntype = 'list'\nx = [0, 1]\nv = [1, 0]\nm = [1, 2]\n"
-                     "[run]\nuntil = 3\n");
-  shell("cradle threshold pair.toml --vary law.loss=0.1:0.4 --digits 20 -o a.h5", 0);
-  EXPECT_EQ(end("a.h5", "low_digits"), "0.33333333333333333333");
-  EXPECT_EQ(end("a.h5", "high_digits"), "0.33333333333333333334");
-  EXPECT_EQ(end("a.h5", "low_outcome"), "0 merges");
-  EXPECT_EQ(end("a.h5", "high_outcome"), "1 merges");
-  EXPECT_EQ(proved("a.h5", "low") + proved("a.h5", "high"), 2U);
-}
-
-// The model of Fig. 9: with a small loss the clusters pass, with the figure's they stick.
-TEST_F(ThresholdCommand, FindsWhetherClustersPass) {
-  shell("cradle threshold fig9b --vary law.loss=0.01:0.05 --digits 3 -o a.h5", 0);
-  EXPECT_EQ(end("a.h5", "low_digits"), "0.0326");
-  EXPECT_EQ(end("a.h5", "low_outcome"), "they pass");
-  EXPECT_EQ(end("a.h5", "high_outcome"), "they stick");
-  EXPECT_EQ(proved("a.h5", "low") + proved("a.h5", "high"), 0U);
-}
-
-TEST_F(ThresholdCommand, OfMoreDigitsContinuesFromItsFile) {
-  const std::string command = "cradle threshold collapse3 --vary 'initial.m[1]=100:110'" + galperin;
-  shell(command + "--digits 12 -o fresh.h5", 0);
-  shell(command + "--digits 5 -o a.h5 && " + command + "--digits 12 -o a.h5", 0);
-  expect_same("fresh.h5", "a.h5");
-  EXPECT_FALSE(exists("a.h5.part"));
-}
+class ThresholdCommand : public ProgramTest {};
 
 // Killed when it has made some runs; a longer search if this one was over by then.
 TEST_F(ThresholdCommand, ContinuesAfterAKillToTheSameBytes) {
+  write("s.toml", "law = { type = 'inelastic', restitution = 1 }\nrun.until = 1e30\nwalls.left.position = 0\n"
+                  "initial = { type = 'list', x = [1, 2], v = [0, -1], m = [1, 100] }\n");
   std::string command;
   for (int digits = 50; digits <= 800 && !exists("a.h5.part"); digits *= 2) {
-    command = "cradle threshold collapse3 --vary 'initial.m[1]=10000:11000'" + galperin + "--quiet --digits " +
+    command = "cradle threshold s.toml --outcome collisions --vary 'initial.m[1]=10000:11000' --quiet --digits " +
               std::to_string(digits) + " -o ";
     shell("rm -f a.h5; " + command +
           "a.h5 & pid=$!; until cradle info a.h5.part 2>.not-yet | grep -q ': [1-9][0-9]* runs' || test -e a.h5; do "

@@ -1,4 +1,5 @@
-// `cradle words`, and scenes that start from a word. (What is refused: tests/tools/messages.txt.)
+// Scenes that start from a word keep it for as long as their digits last. (What `cradle words` prints and writes:
+// tests/tools/outputs.txt. What is refused: tests/tools/messages.txt.)
 
 #include <cmath>
 #include <cstdint>
@@ -44,40 +45,6 @@ class WordsCommand : public ProgramTest {
   }
 };
 
-TEST_F(WordsCommand, PrintsAProvedRangeAndWritesIt) {
-  const Printed printed = shell("cradle words 4 ababcb", 0);
-  EXPECT_TRUE(has(printed.out, "for r from 0 to 0.101020514433643803605431850588")) << printed.out;
-  EXPECT_TRUE(has(printed.out, "existence         proved"));
-  EXPECT_TRUE(has(printed.out, "three particles meet"));
-  EXPECT_TRUE(has(printed.out, "unstable, proved"));
-  const tools::Result result = read("ababcb.h5");
-  EXPECT_EQ(numbers<std::string>(result, "words", "word"), std::vector<std::string>{"ababcb"});
-  EXPECT_EQ(numbers<std::uint64_t>(result, "words", "proved"), std::vector<std::uint64_t>{1});
-  EXPECT_NEAR(numbers(result, "words", "high").front(), 5 - 2 * std::sqrt(6.), 1e-15);
-  // The file's scene is the state that is printed.
-  shell("cradle export ababcb.h5 --to csv && cradle check csv/scene.toml", 0);
-}
-
-TEST_F(WordsCommand, SearchesAllWords) {
-  const Printed printed = shell("cradle words 4 --search 5 --digits 10 -o four.h5", 0);
-  EXPECT_TRUE(has(printed.out, "3 of 3 words up to 5 letters exist for some restitution")) << printed.out;
-  EXPECT_TRUE(has(shell("cradle info four.h5").out, "title = \"words of collapse, the first: "));
-  const auto high = numbers(read("four.h5"), "words", "high");
-  ASSERT_EQ(high.size(), 3U);
-  EXPECT_NEAR(high[0], 3 - 2 * std::sqrt(2.), 1e-10) << "abc, which is acb";
-  EXPECT_NEAR(high[1], 0.191659578393, 1e-10) << "abcb";
-}
-
-// Three particles at a wall: with the mirror image of the wall six, if the wall were elastic.
-TEST_F(WordsCommand, KnowsWallsAndMasses) {
-  EXPECT_TRUE(has(shell("cradle words 3 abcb --walls left -o a.h5", 0).out, "right of a wall"));
-  EXPECT_TRUE(has(shell("cradle words 3 abcdcb --walls both -o b.h5", 0).out, "nowhere"));
-  // A light particle between two heavy ones collapses up to a larger restitution than between equal ones.
-  shell("cradle words 3 ab --masses 4,1,4 -o light.h5 && cradle words 3 ab --masses 1,4,1 -o heavy.h5", 0);
-  EXPECT_GT(numbers(read("light.h5"), "words", "high").front(), 0.08);
-  EXPECT_LT(numbers(read("heavy.h5"), "words", "high").front(), 0.07);
-}
-
 // An error of the last bit grows by the state's factor in every period, until it is as large as the state: 230 digits
 // are 766 bits. How large it has to be to change a collision, and how large it was, is worth a period or two. From
 // positions and velocities cut off after 230 decimals it is as many as a separate program found that started from an
@@ -109,27 +76,6 @@ TEST_F(WordsCommand, RunsKeepTheirWordForAsLongAsTheirDigitsLast) {
     shell("cradle run cut.toml --quiet --force -o cut.h5");
     EXPECT_NEAR(periods("cut.h5"), found_elsewhere, 2);
   }
-}
-
-TEST_F(WordsCommand, RecordsTheOrderOfCollisions) {
-  // Two elastic particles between walls pass on their velocities: 1, 1, 1, ... and 0, 0, 0, ...
-  const std::string scene =
-      "[law]\ntype = 'inelastic'\nrestitution = 1\n[initial]\ntype = 'list'\nx = [1, 2]\n"
-      "v = [1, 0]\n[walls]\nleft.position = 0\nright.position = 3\n[run]\nuntil = 57.5\n[output]\n";
-  write("two.toml", scene + "word = 'bcba'\n");
-  shell("cradle run two.toml -o two.h5", 0);
-  const tools::Result result = read("two.h5");
-  EXPECT_EQ(numbers<std::string>(result, "sequence", "letters"), (std::vector<std::string>{"bcba", "bcb"}));
-  EXPECT_EQ(numbers<std::uint64_t>(result, "sequence", "repeats"), (std::vector<std::uint64_t>{9, 1}));
-  EXPECT_EQ(numbers(result, "sequence", "time"), (std::vector<double>{1, 55}));
-  EXPECT_TRUE(has(shell("cradle info two.h5", 0).out,
-                  "follows = 1  gaps = 3  kept = 39  left_at = nan  periods = 9  word = bcba"));
-  // In an ensemble nothing of it is kept.
-  shell("cradle ensemble two.toml --replicas 2 -o ensemble.h5", 0);
-  EXPECT_EQ(read("ensemble.h5").find("sequence"), nullptr);
-  shell("cradle run two.toml --set output.word=any -o any.h5", 0);
-  EXPECT_EQ(numbers<std::string>(read("any.h5"), "sequence", "letters").front(), "bcba");
-  EXPECT_FALSE(has(shell("cradle info any.h5", 0).out, "periods"));
 }
 
 TEST_F(WordsCommand, ScenesStartFromAWordInEveryType) {

@@ -2,6 +2,7 @@
 // is refused with file, line and key, and nothing but a scene or such a refusal comes of any value.
 #include <map>
 #include <regex>
+#include <sstream>
 
 #include "cradle/tests/tools/program.hpp"
 #include "cradle/tools/scene/fields.hpp"
@@ -26,57 +27,16 @@ Assignments with(Assignments scene, const Assignments& more) {
 
 // Scenes that together have every row of the table.
 std::vector<Assignments> scenes() {
-  const Assignments inelastic = {{"law.type", "'inelastic'"}, {"law.restitution", "0.9"}, {"run.until", "100"}};
-  const Assignments wet = {{"law.type", "'wet'"}, {"law.loss", "1e-4"}, {"run.until", "100"}};
-  const Assignments list =
-      with(inelastic, {{"initial.type", "'list'"}, {"initial.x", "[0, 1]"}, {"initial.v", "[1, 0]"}});
-  Assignments of_a_word = with(list, {{"initial.word", "'ab'"}, {"law.restitution", "0.05"}}),
-              of_a_file = with(list, {{"initial.file", "'a.csv'"}});
-  for (const char* key : {"initial.x", "initial.v"}) of_a_word.erase(key), of_a_file.erase(key);
-  return {
-      with(inelastic, {{"initial.type", "'rows'"},
-                       {"initial.particles", "20"},
-                       {"law.cutoff", "1e-3"},
-                       {"law.cutoff_exponent", "5"},
-                       {"output.series.points", "10"},
-                       {"output.averages.every", "1"},
-                       {"output.averages.range", "[0, 1]"},
-                       {"output.histograms", "['gap', 'cluster']"},
-                       {"output.counting.every", "1"},
-                       {"output.counting.cluster_gap", "1"},
-                       {"output.correlations.every", "1"},
-                       {"output.structure.every", "1"},
-                       {"output.structure.length", "1"},
-                       {"gravity.acceleration", "-1"},
-                       {"walls.left.position", "-100"},
-                       {"walls.left.motion", "'sine'"},
-                       {"walls.left.amplitude", "1"},
-                       {"walls.left.frequency", "1"},
-                       {"walls.right.position", "100"},
-                       {"walls.right.motion", "'sine'"},
-                       {"walls.right.amplitude", "1"},
-                       {"walls.right.frequency", "1"}}),
-      with(inelastic, {{"initial.type", "'rows'"},
-                       {"initial.left.particles", "2"},
-                       {"initial.left.speed", "1"},
-                       {"initial.right.particles", "2"},
-                       {"initial.right.speed", "-1"},
-                       {"initial.centre.mass", "1"},
-                       {"run.precision", "'mpfr'"}}),
-      with(inelastic, {{"initial.type", "'ring'"},
-                       {"output.pair_distribution.every", "1"},
-                       {"output.pair_distribution.distance", "1"},
-                       {"run.collapse", "'merge'"},
-                       {"run.merge_speed", "1"}}),
-      with(inelastic, {{"initial.type", "'cold'"}, {"run.collapse", "'contact-time'"}, {"run.contact_time", "1"}}),
-      with(inelastic, {{"initial.type", "'cold'"}, {"initial.hot", "2"}}),
-      with(inelastic, {{"initial.type", "'gas'"}}),
-      with(wet, {{"initial.type", "'rows'"}}),
-      with(wet, {{"initial.type", "'clusters'"}, {"initial.x", "[-1, 1]"}}),
-      list,
-      of_a_word,
-      of_a_file,
-  };
+  std::istringstream file(tests::contents(test::source_folder + "/tests/tools/scene/every_key.txt"));
+  std::vector<Assignments> all(1);
+  for (std::string line; std::getline(file, line);) {
+    const auto equals = line.find(" = ");
+    if (line.empty())
+      all.emplace_back();
+    else if (!line.starts_with('#'))
+      all.back().emplace(line.substr(0, equals), line.substr(equals + 3));
+  }
+  return all;
 }
 
 // `key` with this value, in place of what the scene says of it.
@@ -141,9 +101,10 @@ std::string kind(const Field& field) {
 
 // Calls of(field, scene) for every row of the table and a scene to which it applies.
 template <class F> void for_each_row(const F& of) {
+  const std::vector<Assignments> all = scenes();
   for (const Field& field : scene_fields()) {
     bool applied = false;
-    for (const Assignments& scene : scenes()) {
+    for (const Assignments& scene : all) {
       Assignments plain = scene;
       if (plain.erase("initial.file") > 0) plain = with(plain, {{"initial.x", "[0]"}, {"initial.v", "[0]"}});
       if (!field.when->holds(parse(plain))) continue;
@@ -171,12 +132,13 @@ TEST(WrongTypes, OfEveryKeyAreRefusedWithFileLineAndKey) {
 
 // What is no table where there are only tables.
 TEST(WrongTypes, OfEveryTableAreRefusedWithFileLineAndKey) {
+  const Assignments scene = scenes().front();
   for (const Field& field : scene_fields())
     for (auto dot = field.key.find('.'); dot != field.key.npos; dot = field.key.find('.', dot + 1))
       for (const Wrong& wrong : values) {
         const std::string table(field.key.substr(0, dot)), value = wrong.value;
         if (value.starts_with('{')) continue;
-        const Assignments given = with_value(scenes().front(), table, value);
+        const Assignments given = with_value(scene, table, value);
         expect_place(answer(given), given, table);
       }
 }

@@ -171,16 +171,27 @@ TEST(InitialGaps, AreThoseOfTheKey) {
   });
 }
 
-// Collisions of particles of mass 1 one after the other, in rationals.
-struct Exactly {
-  std::vector<std::uint64_t> left;
-  Rational energy;
-};
+RunOutcome run_of(const std::string& scene) {
+  return run_scene(parse_scene(scene, "s.toml"), {.progress = Progress::Show::never});
+}
 
-Exactly reference(const Particles& particles, const Rational& until) {
+using Collisions = std::vector<std::pair<std::uint64_t, std::uint64_t>>;  // the particles on the left and on the right
+
+Collisions collisions_of(const Result& run) {
+  Collisions pairs;
+  if (run.find("events") == nullptr) return pairs;
+  const auto left = tests::numbers<std::uint64_t>(run, "events", "left"),
+             right = tests::numbers<std::uint64_t>(run, "events", "right");
+  for (std::size_t k = 0; k < left.size(); ++k) pairs.emplace_back(left[k], right[k]);
+  return pairs;
+}
+
+// Collisions of particles of mass 1 one after the other, in rationals, and the energy after them.
+
+std::pair<Collisions, Rational> reference(const Particles& particles, const Rational& until) {
   std::vector<Rational> gap = particles.gap, v;
   for (const std::string& text : particles.v) v.push_back(exact(text));
-  Exactly found;
+  Collisions collisions;
   for (Rational t = 0;;) {
     std::size_t next = gap.size();
     Rational soonest = until - t;
@@ -192,53 +203,39 @@ Exactly reference(const Particles& particles, const Rational& until) {
     if (next == gap.size()) break;
     const Rational impulse = Rational(8, 10) * (v[next] - v[next + 1]);  // (1 + r)/2 with r = 0.6
     v[next] -= impulse, v[next + 1] += impulse;
-    found.left.push_back(next);
+    collisions.emplace_back(next, next + 1);
   }
-  for (const Rational& speed : v) found.energy += speed * speed / 2;
-  return found;
-}
-
-std::uint64_t attribute_of(const Result& result, const char* name) {
-  return attribute<std::uint64_t>(result.attributes, name, "");
+  Rational energy = 0;
+  for (const Rational& speed : v) energy += speed * speed / 2;
+  return {collisions, energy};
 }
 
 // Six particles of this restitution do not collapse: tan^2(pi/6) = 1/3.
 TEST(InitialGaps, OrderOfCollisionsIsThatOfRationals) {
   std::mt19937_64 random(4101);
-  int uncertain = 0;
   for (int scene = 0; scene < 2000; ++scene) {
     const Particles particles = draw(random, 3 + static_cast<int>(random() % 4));
-    const Exactly wanted = reference(particles, 1);
+    const auto [collisions, energy] = reference(particles, 1);
     const std::string text = list_scene(particles, "run.until = 1\noutput = { events = true, series.points = 2 }\n");
-    const RunOutcome outcome = run_scene(parse_scene(text, "s.toml"), {.progress = Progress::Show::never});
-    if (attribute_of(outcome.result, "simultaneous_collisions") + attribute_of(outcome.result, "order_lost") > 0) {
-      ++uncertain;
-      continue;
-    }
-    const Group* events = outcome.result.find("events");
-    const auto left = events == nullptr ? std::vector<std::uint64_t>()
-                                        : std::get<std::vector<std::uint64_t>>(events->columns.at(0).values);
-    ASSERT_EQ(left, wanted.left) << scene << '\n' << text;
-    EXPECT_NEAR(outcome.energy, static_cast<double>(wanted.energy), 1e-12 * static_cast<double>(wanted.energy)) << text;
+    const RunOutcome outcome = run_of(text);
+    for (const char* uncertain : {"simultaneous_collisions", "order_lost"})
+      EXPECT_EQ(attribute<std::uint64_t>(outcome.result.attributes, uncertain, ""), 0U) << text;
+    ASSERT_EQ(collisions_of(outcome.result), collisions) << scene << '\n' << text;
+    EXPECT_NEAR(outcome.energy, static_cast<double>(energy), 1e-12 * static_cast<double>(energy)) << text;
   }
-  EXPECT_EQ(uncertain, 0);
 }
 
 const std::string touching = "law = { type = 'inelastic', restitution = 1 }\ninitial.type = 'list'\nrun.until = 5\n";
 
 TEST(TouchingParticles, ThatPartOrRestAreAccepted) {
-  const auto energy_after = [&](const std::string& particles) {
-    return run_scene(parse_scene(touching + particles, "s.toml"), {.progress = Progress::Show::never}).energy;
-  };
-  EXPECT_EQ(energy_after("initial.x = [0, 1, 1]\ninitial.v = [1, 0, 2]"), 2.5);
-  EXPECT_EQ(energy_after("initial.gap = [1, 0]\ninitial.v = [-1, 0, 0]"), 0.5);
+  EXPECT_EQ(run_of(touching + "initial.x = [0, 1, 1]\ninitial.v = [1, 0, 2]").energy, 2.5);
+  EXPECT_EQ(run_of(touching + "initial.gap = [1, 0]\ninitial.v = [-1, 0, 0]").energy, 0.5);
 }
 
 // As is advised where they touch and approach (tests/tools/messages.txt).
 TEST(TouchingParticles, AreGivenADistanceInstead) {
   for (const char* gaps : {"[1, 1e-300]", "[1e-300, 1e-300]"}) {
-    const Scene scene = parse_scene(touching + "initial.gap = " + gaps + "\ninitial.v = [1, 0, 0]", "s.toml");
-    const RunOutcome cradle = run_scene(scene, {.progress = Progress::Show::never});
+    const RunOutcome cradle = run_of(touching + "initial.gap = " + gaps + "\ninitial.v = [1, 0, 0]");
     EXPECT_EQ(cradle.collisions, 2U);
     EXPECT_EQ(cradle.warning, "");
   }
@@ -248,44 +245,31 @@ TEST(TouchingParticles, AreGivenADistanceInstead) {
 // of positions, which do not resolve a collapse.
 class Continued : public tests::ProgramTest {
  protected:
-  using Collisions = std::vector<std::pair<std::uint64_t, std::uint64_t>>;
-
   // `initial` begins with the table's other keys.
   Collisions collisions(const std::string& common, const std::string& initial, const std::string& start,
-                        const std::string& until, const std::string& result, int status) {
+                        const std::string& until, const std::string& result) {
     write("scene.toml", common + "output = { events = true, series.points = 2, snapshots = [" + until +
                             "] }\n[run]\nstart = " + start + "\nuntil = " + until + "\n[initial]\ntype = 'list'\n" +
                             initial);
-    shell("cradle run scene.toml --quiet -o " + result, status);
-    const Result run = read(result);
-    Collisions pairs;
-    const Group* events = run.find("events");
-    for (std::size_t k = 0; events != nullptr && k < events->columns.at(0).rows(); ++k)
-      pairs.emplace_back(std::get<std::vector<std::uint64_t>>(events->columns.at(0).values)[k],
-                         std::get<std::vector<std::uint64_t>>(events->columns.at(1).values)[k]);
-    return pairs;
+    shell("cradle run scene.toml --quiet -o " + result, 0);
+    return collisions_of(read(result));
   }
 
   void has_the_collisions_of_one_run(const std::string& common, const std::string& initial,
                                      const std::vector<std::string>& times, double collapse = 0) {
-    const Collisions whole = collisions(common, initial, "0", times.back(), "whole.h5", 0);
+    const Collisions whole = collisions(common, initial, "0", times.back(), "whole.h5");
     Collisions pieces;
     std::string start = "0", from = initial;
     for (std::size_t k = 0; k < times.size(); ++k) {
       const std::string result = fmt::format("{}.h5", k);
-      const Collisions piece = collisions(common, from, start, times[k], result, 0);
+      const Collisions piece = collisions(common, from, start, times[k], result);
       pieces.insert(pieces.end(), piece.begin(), piece.end());
       start = times[k], from = "file = '" + result + "'\n";
     }
     EXPECT_EQ(pieces, whole);
     EXPECT_GT(whole.size(), times.size());
-    const auto gaps = [&](const std::string& file) {
-      const Result run = read(file);
-      for (const Column& column : run.find("snapshots/0000")->columns)
-        if (column.name == "gap") return std::get<std::vector<double>>(column.values);
-      return std::vector<double>();
-    };
-    const auto at_end = gaps("whole.h5"), in_pieces = gaps(fmt::format("{}.h5", times.size() - 1));
+    const auto at_end = tests::numbers(read("whole.h5"), "snapshots/0000", "gap"),
+               in_pieces = tests::numbers(read(fmt::format("{}.h5", times.size() - 1)), "snapshots/0000", "gap");
     ASSERT_EQ(at_end.size(), in_pieces.size());
     // Each rounding moves a collapse by some units of the last place, and all gaps there are shorter by that. Elsewhere
     // it is as tools/proof/agreement.hpp says, with speeds of at most 2 and a length of 5.

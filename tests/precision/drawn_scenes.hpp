@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <concepts>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -154,6 +155,13 @@ inline int place_of(const Drawn& d, std::size_t side) {
 }
 inline int velocity_of(const Drawn& d, std::size_t side) { return (side == 0 ? 1 : -1) * d.walls[side]->speed; }
 constexpr std::uint64_t wall_seed = 21;
+// As the type rounds it; rationals have no text.
+template <class T> T coefficient(const char* decimals) {
+  if constexpr (std::same_as<T, Rational>)
+    return decimal<T>(decimals);
+  else
+    return from_text<T>(decimals);
+}
 
 template <class T> Gas<T> gas_of(const Drawn& d) {
   const auto unit = [](int n) { return T(n) / 64; };
@@ -198,7 +206,7 @@ template <class T> std::shared_ptr<const Particles<T>> particles_of(const Drawn&
     if (d.walls[side])
       walls[side] = Wall<T>{unit(place_of(d, side)),
                             unit(velocity_of(d, side)),
-                            from_text<T>(d.walls[side]->restitution),
+                            coefficient<T>(d.walls[side]->restitution),
                             d.walls[side]->temperature,
                             wall_seed,
                             0};

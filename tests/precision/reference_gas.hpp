@@ -237,13 +237,4 @@ template <class T> struct Gas {
   }
 };
 
-// The same particles, without walls.
-template <class T> Gas<T> gas_like(const Particles<T>& particles) {
-  Gas<T> gas;
-  for (ParticleIndex b = 0; b < particles.count(); ++b)
-    gas.cells.push_back({particles.position(b), particles.velocity(b), particles.mass(b), {b}});
-  gas.length = particles.circumference();
-  return gas;
-}
-
 }  // namespace cradle::test

@@ -1,7 +1,5 @@
 // Ranges of times in place of lists: the decimals that a user would write, in every key that takes times, in files and
 // on the command line. (Messages: tests/tools/messages.txt.)
-#include "cradle/tools/scene/time_range.hpp"
-
 #include "cradle/tests/core/rational.hpp"
 #include "cradle/tests/tools/program.hpp"
 #include "cradle/tools/record/schedule.hpp"

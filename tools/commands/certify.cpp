@@ -33,9 +33,10 @@ Exit run_certify(const CertifyArguments& options) {
   check_overwrite(output, options.command(), &scene, options.force());
   Interrupt interrupt;
   note_signals(interrupt);
-  CertifyOptions how{{}, options.show(), &interrupt};
-  how.digits = options.digits.empty() ? rising_digits() : options.digits;
-  how.threads = options.threads;
+  const CertifyOptions how{.digits = options.digits.empty() ? rising_digits() : options.digits,
+                           .progress = options.show(),
+                           .interrupt = &interrupt,
+                           .threads = options.threads};
   if (options.replicas > 0) {
     const CertifiedReplicas run = certify_replicas(scene, options.replicas, options.threads, how);
     Result result = replicas_result(run);

@@ -20,13 +20,11 @@ Exit run_study_command(const RunningOptions& options, const std::function<StudyP
   if (crew->rank() == 0) notify(same_replicas_warning(plan.study, plan.replicas.count));
   if (crew->rank() == 0 && !options.quiet) notify(plan.note);
   const std::string& output = plan.output;
-  EnsembleOptions how;
-  how.replicas = plan.replicas;
-  how.threads = options.threads;
-  how.force = plan.force;
-  how.progress = options.show();
   const auto started = std::chrono::steady_clock::now();
-  const EnsembleOutcome end = run_study(plan.study, how, output, *crew);
+  const EnsembleOutcome end = run_study(
+      plan.study,
+      {.replicas = plan.replicas, .threads = options.threads, .progress = options.show(), .force = plan.force}, output,
+      *crew);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
   if (crew->rank() != 0) return end.status;
   if (!options.quiet) notify(end.account);

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "cradle/tools/commands/commands.hpp"
+#include "cradle/tools/scene/checks.hpp"
 #include "cradle/tools/support/atomic_file.hpp"
 
 namespace cradle::tools {
@@ -20,11 +21,7 @@ struct WordsArguments : OutputOptions {
 
 std::optional<Decimal> restitution(const std::optional<std::string>& text) {
   if (!text) return {};
-  try {
-    Decimal r(*text);
-    if (r > Decimal("0") && r < Decimal("1")) return r;
-  } catch (const std::invalid_argument&) {
-  }
+  if (const Decimal r(canonical_decimal(*text).value_or("0")); r > Decimal("0") && r < Decimal("1")) return r;
   throw Error({"", 0, "--at"}, "not a restitution", *text, "give a number between 0 and 1");
 }
 
@@ -47,22 +44,16 @@ Exit run_words(const WordsArguments& options) {
   const std::string output = !options.output.empty() ? options.output
                              : options.word.empty()  ? "words-" + options.particles + ".h5"
                                                      : options.word + ".h5";
-  const auto check = [&] { check_overwrite(output, command_of(options), nullptr, options.force()); };
+  const words::Word word =
+      options.word.empty() ? words::Word() : word_at({"", 0, "WORD"}, options.word, particles.gaps());
+  const FileClaim claim(output);
+  check_overwrite(output, command_of(options), nullptr, options.force());
   std::vector<WordReport> reports;
   std::size_t tried = 1;
-  if (!options.word.empty()) {
-    try {
-      const words::Word word = words::read_word(options.word, particles.gaps());
-      const FileClaim claim(output);
-      check();
-      reports.push_back(report_word(particles, word, restitution(options.at)));
-    } catch (const words::BadWord& bad) {
-      throw Error({"", 0, "WORD"}, bad.what(), bad.found, bad.advice);
-    }
+  if (!word.empty()) {
+    reports.push_back(report_word(particles, word, restitution(options.at)));
     fmt::print("{}", word_text(particles, reports.back()));
   } else {
-    const FileClaim claim(output);
-    check();
     tried = 0;
     fmt::print("{}\n{:<14} {:<18} {:<18}  {:<9} {:<23}  upper end\n", particles.text(), "word", "r from", "to",
                "existence", "stable (seen)");

@@ -63,8 +63,8 @@ class AverageMeasurement {
       table.columns[2 * q + 1].values = std::move(values);
       table.columns[2 * q + 2].values = std::move(errors);
     }
-    add_attributes(table,
-                   {{"samples", std::uint64_t{averages_.samples()}}, {"error_growth", averages_.error_growth()}});
+    append(table.attributes,
+           {{"samples", std::uint64_t{averages_.samples()}}, {"error_growth", averages_.error_growth()}});
     put.add(std::move(table));
   }
 

@@ -58,9 +58,9 @@ class CorrelationMeasurement {
     }
     table = filled(table, table.columns.front().values, std::move(displacement), std::move(of_displacement),
                    std::move(velocity), std::move(of_velocity));
-    add_attributes(table, {{"samples", correlator_.samples()},
-                           {"particles", std::uint64_t{tagged_}},
-                           {"error_growth", error_growth(displacements)}});
+    append(table.attributes, {{"samples", correlator_.samples()},
+                              {"particles", std::uint64_t{tagged_}},
+                              {"error_growth", error_growth(displacements)}});
     put.add(std::move(table));
   }
 

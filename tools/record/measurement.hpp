@@ -20,8 +20,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <functional>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -55,9 +53,6 @@ template <class Wanted> DecimalColumn samples_of(const Wanted& wanted) {
 template <class Wanted> std::vector<Attribute> span_of(const Wanted& wanted) {
   return {{"from", wanted.from.value}, {"until", wanted.until.value}};
 }
-
-/// Appends attributes to those of a table.
-inline void add_attributes(Group& table, std::vector<Attribute>&& more) { append(table.attributes, std::move(more)); }
 
 /// The name of the next table of a folder.
 inline std::string numbered(std::string_view folder, std::uint64_t& n) { return fmt::format("{}/{:04}", folder, n++); }

@@ -9,12 +9,11 @@
 #include "cradle/tools/record/events.hpp"
 #include "cradle/tools/record/histograms.hpp"
 #include "cradle/tools/record/masses.hpp"
-#include "cradle/tools/record/pair_distribution.hpp"
+#include "cradle/tools/record/places.hpp"
 #include "cradle/tools/record/profiles.hpp"
 #include "cradle/tools/record/scenario.hpp"
 #include "cradle/tools/record/series.hpp"
 #include "cradle/tools/record/snapshots.hpp"
-#include "cradle/tools/record/structure.hpp"
 #include "cradle/tools/record/word.hpp"
 #include "cradle/tools/record/zone.hpp"
 

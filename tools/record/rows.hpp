@@ -43,6 +43,21 @@ std::span<const MeasurementRow* const> measurement_rows();
 
 std::size_t row_number(std::string_view name);
 
+/// A time at which a run is recorded: the decimal in the scene, or the run's own time if the scene gives none.
+struct RequestedTime {
+  Decimal time;
+  bool of_series = false, of_snapshots = false;
+  bool last = false;  // the end of the run
+};
+
+/// The times of the series and of tables at times, and the end, as results store them: rounded from the run's
+/// precision.
+struct PlannedTimes {
+  std::vector<double> series;
+  std::vector<std::vector<double>> tables;  // of each measurement, as measurement_rows() has them
+  double until = 0;
+};
+
 /// The times of the series of a scene.
 DecimalColumn series_times(const Scene& scene);
 

@@ -8,7 +8,6 @@
 
 #include "cradle/tools/engines/any_engine.hpp"
 #include "cradle/tools/record/rows.hpp"
-#include "cradle/tools/record/times.hpp"
 
 namespace cradle::tools {
 

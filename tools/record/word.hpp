@@ -57,10 +57,11 @@ class WordMeasurement {
                  {"first", "1", "number of the first of these collisions, from 0", std::move(first)},
                  {"time", "t", "time of that collision, rounded", std::move(time)}}};
     if (!followed_) return table;
-    for (const Attribute& attribute :
-         {Attribute("word", word_), Attribute("kept", followed_->kept()), Attribute("periods", followed_->periods()),
-          Attribute("follows", std::uint64_t{followed_->follows()}), Attribute("left_at", left_at_)})
-      table.attributes.push_back(attribute);
+    append(table.attributes, {{"word", word_},
+                              {"kept", followed_->kept()},
+                              {"periods", followed_->periods()},
+                              {"follows", std::uint64_t{followed_->follows()}},
+                              {"left_at", left_at_}});
     return table;
   }
 

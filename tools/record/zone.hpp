@@ -78,8 +78,8 @@ class ZoneMeasurement {
     Group table = std::move(zone_tables(scene_).front());
     table = filled(table, table.columns.front().values, zone_.mass_density(), zone_.density_right(),
                    zone_.velocity_right(), zone_.density_left(), zone_.velocity_left());
-    add_attributes(
-        table, {{"samples", std::uint64_t{zone_.samples()}}, {"width", width_.width}, {"width_error", width_.error}});
+    append(table.attributes,
+           {{"samples", std::uint64_t{zone_.samples()}}, {"width", width_.width}, {"width_error", width_.error}});
     put.add(std::move(table));
   }
   Summary summary() const { return {{"zone_width", width_.width}}; }

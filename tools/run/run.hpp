@@ -9,7 +9,6 @@
 
 #include "cradle/core/parallel/workers.hpp"
 #include "cradle/tools/engines/precision.hpp"
-#include "cradle/tools/record/times.hpp"
 #include "cradle/tools/result/result.hpp"
 #include "cradle/tools/run/ends.hpp"
 #include "cradle/tools/run/run_observer.hpp"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "cradle/core/engine/status.hpp"
-#include "cradle/tools/record/times.hpp"
+#include "cradle/tools/record/rows.hpp"
 
 namespace cradle::tools {
 

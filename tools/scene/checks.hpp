@@ -1,8 +1,9 @@
 // What a scene must be like. keys.cpp checks that its keys are known and apply to its law, initial state and policy.
-// checks.cpp checks what several keys say together: it refuses rows that do not meet, particles out of order, two
-// settings for the same thing, and numbers beyond the range of the working precision.
+// checks_of_state.cpp and checks.cpp check what several keys say together: they refuse rows that do not meet, particles
+// out of order, two settings for the same thing, and numbers beyond the range of the working precision.
 #pragma once
 
+#include "cradle/core/words/word.hpp"
 #include "cradle/tools/scene/scene.hpp"
 #include "cradle/tools/scene/source.hpp"
 
@@ -23,7 +24,10 @@ void refuse_inapplicable_keys(const Entries& entries, const Scene& scene, std::s
 /// that are missing.
 void check_scene(const Scene& scene, const Entries& entries, const std::string& scene_file);
 
-/// The same for output.word, which is at this place, once the particles of a list are read.
+/// The word of these letters, which stand at this place. Throws Error.
+words::Word word_at(const Place& place, const std::string& letters, std::size_t gaps);
+
+/// Checks output.word, which is at this place, once the particles of a list are read.
 void check_word(const Place& place, const Scene& scene);
 
 }  // namespace cradle::tools

@@ -9,8 +9,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "cradle/tools/scene/time_range.hpp"
-
 namespace cradle::tools {
 namespace {
 
@@ -181,23 +179,17 @@ std::optional<std::string> written(const Field&, const std::uint64_t& value) {
   return value >> 63U == 0 ? text : in_quotes(text);
 }
 std::optional<std::string> written(const Field&, const bool& value) { return value ? "true" : "false"; }
-std::optional<std::string> written(const Field& field, const std::vector<Decimal>& value) {
-  if (value.empty() && field.fallback.empty()) return {};
-  std::string text;
-  for (const Decimal& number : value) text += (text.empty() ? "" : ", ") + number.text;
-  return '[' + text + ']';
-}
-std::optional<std::string> written(const Field&, const DecimalColumn& value) {
-  if (value.empty()) return {};
+
+std::string_view item_text(std::string_view decimal) { return decimal; }
+std::string_view item_text(const Decimal& decimal) { return decimal.text; }
+std::string item_text(const std::string& text) { return in_quotes(text); }
+template <class List>
+requires requires(const List& list) { item_text(list[0]); }
+std::optional<std::string> written(const Field& field, const List& list) {
+  if (list.empty() && field.fallback.empty()) return {};
   std::string text = "[";
-  for (std::size_t i = 0; i < value.size(); ++i) text.append(i == 0 ? "" : ", ").append(value[i]);
+  for (std::size_t i = 0; i < list.size(); ++i) text.append(i == 0 ? "" : ", ").append(item_text(list[i]));
   return text + ']';
-}
-std::optional<std::string> written(const Field& field, const std::vector<std::string>& value) {
-  if (value.empty() && field.fallback.empty()) return {};
-  std::string text;
-  for (const std::string& item : value) text += (text.empty() ? "" : ", ") + in_quotes(item);
-  return '[' + text + ']';
 }
 template <class E>
 requires is_choice<E> std::optional<std::string> written(const Field& field, const E& value) {

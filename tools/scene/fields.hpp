@@ -51,6 +51,9 @@ std::span<const Field> scene_fields();
 /// The row of this key that applies to the scene, else any row of this key, else nullptr.
 const Field* find_field(std::string_view key, const Scene& scene);
 
+/// Whether this key takes a list of times, and so a range too.
+bool takes_times(const Field& field);
+
 /// "number", "integer", "text", "one of", "list of numbers", "list of texts", "true or false".
 std::string_view type_name(const Field& field);
 
@@ -73,6 +76,11 @@ std::optional<std::string> value_text(const Field& field, const Scene& scene);
 
 /// All numbers stored at this field (none for texts, integers and choices).
 std::vector<Decimal> numbers_of(const Field& field, const Scene& scene);
+
+/// A range of times in place of a list is {from, until, every} or {from, until, points, spacing}. Replaces every one by
+/// the list of its decimals: from + k every, as exact decimals; or evenly spaced points, or points of equal ratios,
+/// with 15 digits, which every double holds. Scenes know lists only. Throws Error at the place of the wrong part.
+void expand_time_ranges(Entries& entries);
 
 /// Type, range, unit and default: `number (0, inf), in l, default 1`.
 std::string facts(const Field& field);

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <compare>
-#include <string>
 
 namespace cradle::tools {
 

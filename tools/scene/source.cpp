@@ -163,12 +163,6 @@ void flatten(const toml::table& table, const Literals& literals, const Place& pl
   }
 }
 
-std::string_view trimmed(std::string_view text) {
-  const auto first = text.find_first_not_of(blanks);
-  if (first == text.npos) return {};
-  return text.substr(first, text.find_last_not_of(blanks) + 1 - first);
-}
-
 // The entries of `value = TEXT`, under `key`; nothing if TEXT is not TOML.
 std::optional<Entries> assigned(std::string_view text, const Place& place) {
   const std::string document = quote_wide_literals("value = " + std::string(text));
@@ -214,6 +208,12 @@ void replace_item(Entries& entries, const Place& place, std::string_view text) {
 }
 
 }  // namespace
+
+std::string_view trimmed(std::string_view text) {
+  const auto first = text.find_first_not_of(blanks);
+  if (first == text.npos) return {};
+  return text.substr(first, text.find_last_not_of(blanks) + 1 - first);
+}
 
 std::string describe(const Value& value) {
   switch (value.kind) {

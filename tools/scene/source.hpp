@@ -19,6 +19,9 @@ struct Value {
   Place place;
 };
 
+/// The text without blanks and line ends around it.
+std::string_view trimmed(std::string_view text);
+
 /// A value as messages show it: `"wet"`, `1.5`, `an array of 3 values`.
 std::string describe(const Value& value);
 

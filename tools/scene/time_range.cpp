@@ -1,20 +1,15 @@
-// A range is read before anything else is known of its scene: its ends may be run.start and run.until.
-#include "cradle/tools/scene/time_range.hpp"
-
+// A range of times is read before anything else is known of its scene: its ends may be run.start and run.until.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <optional>
 
-#include "cradle/precision/bin_float.hpp"
-#include "cradle/tools/scene/fields.hpp"
+#include "cradle/tools/scene/checked.hpp"
 
 namespace cradle::tools {
 namespace {
 
 constexpr std::string_view advice_on_parts = "give from, until and every, or from, until, points and spacing";
-
-bin_float precise(const Decimal& decimal) { return from_text<bin_float>(decimal.text); }
 
 class TimeRange {
  public:

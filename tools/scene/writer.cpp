@@ -7,7 +7,6 @@
 
 #include "cradle/tools/scene/fields.hpp"
 #include "cradle/tools/scene/scene.hpp"
-#include "cradle/tools/scene/time_range.hpp"
 
 namespace cradle::tools {
 namespace {

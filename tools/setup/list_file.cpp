@@ -1,5 +1,4 @@
-// Reads particles from CSV line by line, or from the last snapshot of a result. Every number is checked when it is
-// read, so that messages can name the line.
+// Reads particles from CSV line by line. Every number is checked when it is read, so that messages can name the line.
 #include "cradle/tools/setup/list_file.hpp"
 
 #include <algorithm>
@@ -14,19 +13,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "cradle/tools/result/reader.hpp"
-#include "cradle/tools/setup/initial_state.hpp"
-#include "cradle/tools/setup/read_scene.hpp"
+#include "cradle/tools/scene/source.hpp"
 #include "cradle/tools/support/atomic_file.hpp"
 
 namespace cradle::tools {
 namespace {
-
-std::string_view trimmed(std::string_view text) {
-  const auto first = text.find_first_not_of(" \t\r");
-  if (first == text.npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t\r") + 1 - first);
-}
 
 void split(std::string_view line, std::vector<std::string_view>& cells) {
   cells.clear();
@@ -61,8 +52,14 @@ bool is_not_finite(std::string_view cell) {
 constexpr const char* how_to_begin = "begin the file with a line x,v or x,v,m or gap,v";
 
 // The columns of a file, in any order. Those of a snapshot that say nothing of its particles are passed over.
-enum ColumnName { x_column, v_column, m_column, gap_column, closing_column, index_column };
-constexpr std::string_view column_names[] = {"x", "v", "m", "gap", "closing_speed", "index"};
+struct ColumnRow {
+  const char* name;
+  DecimalColumn ListedColumns::*numbers;
+};
+constexpr ColumnRow column_rows[] = {
+    {"x", &ListedColumns::x},     {"v", &ListedColumns::v}, {"m", &ListedColumns::m},
+    {"gap", &ListedColumns::gap}, {"index", nullptr},       {"closing_speed", &ListedColumns::closing_speed},
+};
 
 class Reader {
  public:
@@ -70,13 +67,14 @@ class Reader {
 
   void name_columns(const std::vector<std::string_view>& cells, std::size_t line) {
     for (const std::string_view cell : cells) {
-      const auto name = std::ranges::find(column_names, cell);
-      if (name == std::end(column_names) || has(static_cast<ColumnName>(name - column_names)))
+      const auto* const row = std::ranges::find(column_rows, cell, &ColumnRow::name);
+      if (row == std::end(column_rows) || std::ranges::find(order_, row) != order_.end())
         throw Error({file_, line, {}}, "the columns are not named", described(cells), how_to_begin);
-      order_.push_back(static_cast<ColumnName>(name - column_names));
+      order_.push_back(row);
     }
-    if (!has(v_column) || !(has(x_column) || has(gap_column)))
-      throw Error({file_, line, {}}, "a column is missing", has(v_column) ? "neither x nor gap" : "no v", how_to_begin);
+    const bool v = has(&ListedColumns::v);
+    if (!v || !(has(&ListedColumns::x) || has(&ListedColumns::gap)))
+      throw Error({file_, line, {}}, "a column is missing", v ? "neither x nor gap" : "no v", how_to_begin);
   }
   std::size_t columns() const { return order_.size(); }
 
@@ -86,37 +84,19 @@ class Reader {
       throw Error(place("gap"), "a particle without a distance from the one before it", "an empty cell",
                   "give the gap in the line before");
     for (std::size_t i = 0; i < cells.size(); ++i) {
-      const std::string_view cell = cells[i];
-      switch (order_[i]) {
-      case x_column:
-        // Of particles with gaps only the first one needs a place.
-        if (!has(gap_column) || !cell.empty() || listed_.x.empty()) listed_.x.push_back(number(cell, "x"));
-        break;
-      case v_column:
-        listed_.v.push_back(number(cell, "v"));
-        break;
-      case m_column: {
-        const auto m = number(cell, "m");
-        if (std::is_lteq(compare_decimals(m, "0"))) throw Error(place("m"), "out of range", m, "give a mass above 0");
-        range_.check_positive(m, place("m"));
-        listed_.m.push_back(m);
-        break;
+      const auto& [name, numbers] = *order_[i];
+      if (numbers == nullptr || (cells[i].empty() && may_be_empty(numbers))) continue;
+      const std::string literal = number(cells[i], name);
+      if (numbers == &ListedColumns::m) {
+        if (std::is_lteq(compare_decimals(literal, "0")))
+          throw Error(place(name), "out of range", literal, "give a mass above 0");
+        range_.check_positive(literal, place(name));
       }
-      case gap_column:
-        if (cell.empty())
-          ended_ = true;
-        else
-          listed_.gap.push_back(number(cell, "gap"));
-        break;
-      case closing_column:
-        if (!cell.empty()) listed_.closing_speed.push_back(number(cell, "closing_speed"));
-        break;
-      case index_column:
-        break;
-      }
+      (listed_.*numbers).push_back(literal);
     }
+    ended_ = has(&ListedColumns::gap) && listed_.gap.size() < listed_.v.size();
     const auto& [x, v, m, gap, closing] = listed_;
-    if (!has(gap_column) && x.size() > 1)
+    if (!has(&ListedColumns::gap) && x.size() > 1)
       check_neighbours({x[x.size() - 2], v[v.size() - 2]}, {x.back(), v.back()}, range_, place("x"));
     if (!gap.empty() && std::is_lt(compare_decimals(gap.back(), "0")))
       throw Error(place("gap"), "out of range", std::string(gap.back()), "give 0 or more");
@@ -125,7 +105,14 @@ class Reader {
   const ListedColumns& listed() const { return listed_; }
 
  private:
-  bool has(ColumnName name) const { return std::ranges::find(order_, name) != order_.end(); }
+  bool has(DecimalColumn ListedColumns::*numbers) const {
+    return std::ranges::find(order_, numbers, &ColumnRow::numbers) != order_.end();
+  }
+  // Of particles with gaps only the first one needs a place, and the last one has no gap.
+  bool may_be_empty(DecimalColumn ListedColumns::*numbers) const {
+    if (numbers == &ListedColumns::x) return has(&ListedColumns::gap) && !listed_.x.empty();
+    return numbers == &ListedColumns::gap || numbers == &ListedColumns::closing_speed;
+  }
   Place place(const char* column) const { return {file_, line_, column}; }
 
   std::string number(std::string_view cell, const char* column) const {
@@ -140,7 +127,7 @@ class Reader {
   const std::string& file_;
   NumberRange range_;
   std::size_t line_ = 0;
-  std::vector<ColumnName> order_;
+  std::vector<const ColumnRow*> order_;
   bool ended_ = false;  // by a particle that has no distance to a next one
   ListedColumns listed_;
 };
@@ -247,90 +234,6 @@ ListedParticles parse_list(std::istream& csv, const std::string& file_name, cons
   return particles;
 }
 
-namespace {
-
-// The column of a snapshot as decimals that read back as its numbers.
-DecimalColumn decimals(const Result& result, const std::string& snapshot, const std::string& name,
-                       const std::string& file) {
-  DecimalColumn texts;
-  for (const std::string& folder : {std::string("exact/"), std::string()})
-    if (const Group* group = result.find(folder + snapshot))
-      for (const Column& column : group->columns) {
-        if (column.name != name) continue;
-        if (const auto* exact = std::get_if<std::vector<std::string>>(&column.values)) {
-          for (const std::string& text : *exact)
-            if (const auto number = plain_decimal(text)) texts.push_back(*number);
-          return texts;
-        }
-        if (const auto* doubles = std::get_if<std::vector<double>>(&column.values)) {
-          for (const double x : *doubles)
-            if (std::isfinite(x)) texts.push_back(*plain_decimal(fmt::format("{}", x)));
-          return texts;
-        }
-      }
-  throw Error({file, 0, snapshot}, "a snapshot without a column", name, "take the file from a copy", Exit::io);
-}
-
-// Of the particle that had the lowest number, in the rows of a snapshot: on a ring they begin at any particle.
-std::size_t first_row(const Result& result, const std::string& snapshot) {
-  for (const Column& column : result.find(snapshot)->columns)
-    if (const auto* index = std::get_if<std::vector<std::uint64_t>>(&column.values); index && column.name == "index")
-      return static_cast<std::size_t>(std::ranges::min_element(*index) - index->begin());
-  return 0;
-}
-
-DecimalColumn rotated(const DecimalColumn& column, std::size_t first) {
-  DecimalColumn turned;
-  for (std::size_t i = 0; i < column.size(); ++i) turned.push_back(column[(first + i) % column.size()]);
-  return turned;
-}
-
-// The last snapshot of a result, and the ring that it is on.
-ListedParticles last_state(const std::string& file, Scene& scene) {
-  const Result result = read_result(file);
-  const Scene other = parse_scene(attribute<std::string>(result.attributes, "scene", file), file);
-  std::string snapshot;
-  for (const Group& group : result.groups)
-    if (group.name.starts_with("snapshots/")) snapshot = group.name;
-  if (snapshot.empty())
-    throw Error({file, 0, "snapshots"}, "a result without a state of its particles", "no snapshot",
-                "run its scene with output.snapshots at the time that is to be taken");
-  const auto column = [&](const char* name) { return decimals(result, snapshot, name, file); };
-  ListedColumns listed{column("x"), column("v"), column("m"), column("gap"), column("closing_speed")};
-  if (listed.v.size() != listed.x.size() || listed.m.size() != listed.x.size())
-    throw Error({file, 0, snapshot}, "columns of different lengths", std::to_string(listed.v.size()),
-                "take the file from a copy", Exit::io);
-  const auto all = initial_particles<double>(other);
-  CompensatedSum<double> mass;
-  bool ones = true;
-  for (std::size_t i = 0; i < listed.m.size(); ++i) {
-    const Decimal m(listed.m[i]);
-    mass.add(m.value);
-    ones = ones && m == Decimal("1");
-  }
-  // Any missing particle is heavier than what sums round.
-  if (!(std::abs(mass.value() - all->total_mass()) < all->least_mass() / 2))
-    throw Error({file, 0, snapshot}, "particles that no collision has reached are not in it",
-                fmt::format("{:g} of the mass {:g}", mass.value(), all->total_mass()),
-                "take a later snapshot, when all particles have collided");
-  if (ones) listed.m = {};
-  if (other.initial.on_ring()) {
-    const std::size_t first = first_row(result, snapshot);
-    for (DecimalColumn* numbers : {&listed.x, &listed.v, &listed.m, &listed.gap, &listed.closing_speed})
-      *numbers = rotated(*numbers, first);
-    listed.x = {listed.x[0]};
-  }
-  if (other.initial.on_ring() && !scene.initial.on_ring()) scene.initial.length = other.initial.length;
-  const NumberRange range(scene.run);
-  for (const DecimalColumn* numbers : {&listed.x, &listed.v, &listed.m})
-    for (std::size_t i = 0; i < numbers->size(); ++i) range.check((*numbers)[i], {file, 0, snapshot});
-  ListedParticles particles = placed(std::move(listed), scene.initial.length, {file, 0, snapshot});
-  check_order(particles, scene.run, [&](std::size_t) { return Place{file, 0, snapshot + "/gap"}; });
-  return particles;
-}
-
-}  // namespace
-
 void read_list(const std::filesystem::path& path, Scene& scene) {
   if (const auto found = instead_of_file(path.string()); !found.empty())
     throw Error({path.string(), 0, {}}, "not a list of particles", found,
@@ -349,13 +252,6 @@ void read_list(const std::filesystem::path& path, Scene& scene) {
   scene.initial.x = std::move(particles.x);
   scene.initial.v = std::move(particles.v);
   scene.initial.m = std::move(particles.m);
-}
-
-void check_particles(const Scene& scene) {
-  if (scene.run.precision == Precision::double_)
-    initial_particles<double>(scene);
-  else
-    initial_particles<long double>(scene);
 }
 
 }  // namespace cradle::tools

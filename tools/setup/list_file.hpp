@@ -28,8 +28,11 @@ ListedParticles placed(ListedColumns listed, const Decimal& length, const Place&
 ListedParticles parse_list(std::istream& csv, const std::string& file_name, const Run& run,
                            const Decimal& length = Decimal());
 
-/// Puts the particles of the file into the scene, in place of the file's name; those of a result on a ring with its
-/// circumference, unless the scene has one. A snapshot must have all particles. Throws Error, Exit::io if the file
+/// The particles of the last snapshot of a result, which must have all of them. The scene gets the circumference of the
+/// ring that they are on, unless it has one.
+ListedParticles last_state(const std::string& file, Scene& scene);
+
+/// Puts the particles of the file into the scene, in place of the file's name. Throws Error, Exit::io if the file
 /// cannot be read.
 void read_list(const std::filesystem::path& file, Scene& scene);
 

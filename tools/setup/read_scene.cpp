@@ -11,7 +11,6 @@
 #include "cradle/tools/scene/checks.hpp"
 #include "cradle/tools/scene/fields.hpp"
 #include "cradle/tools/scene/source.hpp"
-#include "cradle/tools/scene/time_range.hpp"
 #include "cradle/tools/setup/list_file.hpp"
 #include "cradle/tools/setup/word_start.hpp"
 #include "cradle/tools/support/atomic_file.hpp"

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "cradle/precision/scalars.hpp"
+#include "cradle/tools/scene/checks.hpp"
 
 namespace cradle::tools {
 
@@ -84,19 +85,14 @@ void start_from_word(const Place& place, Scene& scene) {
   if (!particles.masses.empty() && particles.masses.size() != particles.particles)
     throw Error({place.source, place.line, "initial.m"}, "not one mass per particle of the word",
                 fmt::format("{} for {}", particles.masses.size(), particles.particles), "give as many");
-  try {
-    const words::Word word = words::read_word(text, gaps);
-    const WordStart start = start_with(particles, word, scene.law.restitution);
-    if (start.x.empty())
-      throw Error(place, "a word without a self-similar state at this restitution",
-                  fmt::format("{} at {}", text, scene.law.restitution.text),
-                  fmt::format("see `cradle words {} {}`", particles.particles, text));
-    scene.initial.x = {}, scene.initial.v = {};
-    for (const std::string& x : start.x) scene.initial.x.push_back(x);
-    for (const std::string& v : start.v) scene.initial.v.push_back(v);
-  } catch (const words::BadWord& bad) {
-    throw Error(place, bad.what(), bad.found, bad.advice);
-  }
+  const WordStart start = start_with(particles, word_at(place, text, gaps), scene.law.restitution);
+  if (start.x.empty())
+    throw Error(place, "a word without a self-similar state at this restitution",
+                fmt::format("{} at {}", text, scene.law.restitution.text),
+                fmt::format("see `cradle words {} {}`", particles.particles, text));
+  scene.initial.x = {}, scene.initial.v = {};
+  for (const std::string& x : start.x) scene.initial.x.push_back(x);
+  for (const std::string& v : start.v) scene.initial.v.push_back(v);
   scene.initial.file.reset();
 }
 

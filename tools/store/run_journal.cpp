@@ -1,10 +1,7 @@
 #include "cradle/tools/store/run_journal.hpp"
-#include "cradle/tools/result/growing_tables.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
 
 #include <fmt/format.h>
-
-#include <string>
 
 #include "cradle/tools/record/rows.hpp"
 #include "cradle/tools/run/run.hpp"

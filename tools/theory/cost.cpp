@@ -12,7 +12,6 @@
 #include "cradle/core/parallel/workers.hpp"
 #include "cradle/core/theory/free_cooling.hpp"
 #include "cradle/core/theory/inelastic_collapse.hpp"
-#include "cradle/tools/scene/scene.hpp"
 #include "cradle/tools/theory/laws.hpp"
 
 namespace cradle::tools {

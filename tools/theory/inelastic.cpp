@@ -44,10 +44,10 @@ void predict_inelastic(const Scene& scene, Predictions& table) {
   if (eps < 1) table.number("collapse_onset_particles", "McNamara, Young", "cushion", theory::cushion_particles(eps));
   if (!equal_rows(scene)) return;
 
-  theory::InelasticShock<double> shock{eps};
-  shock.speed = scene.initial.speed.value;
-  shock.spacing = scene.initial.spacing.value;
-  shock.particles = scene.initial.particles;
+  const theory::InelasticShock<double> shock{.restitution = eps,
+                                             .speed = scene.initial.speed.value,
+                                             .spacing = scene.initial.spacing.value,
+                                             .particles = scene.initial.particles};
   table.number("initial_energy", "N m u0^2/2", "continuous", theory::initial_energy(shock));
   table.number("turnover_time", "(4) = 0", "continuous", theory::turnover_time(shock));
   table.number("maximal_front", "x_max", "continuous", theory::maximal_front(shock));

@@ -5,7 +5,6 @@
 #include <array>
 
 #include "cradle/tools/scene/rational.hpp"
-#include "cradle/tools/scene/scene.hpp"
 
 namespace cradle::tools {
 

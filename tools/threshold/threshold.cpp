@@ -5,7 +5,6 @@
 
 #include <filesystem>
 #include <map>
-#include <optional>
 #include <utility>
 
 #include "cradle/tools/proof/certify.hpp"
@@ -154,11 +153,8 @@ class Search {
     } catch (const Error& error) {
       return seen(fmt::format("; {}", error.what()));
     }
-    CertifyOptions how;
-    how.progress = options_.progress;
-    how.interrupt = &options_.interrupt;
-    how.threads = options_.threads;
-    const Certified proof = certify(scene, how);
+    const Certified proof =
+        certify(scene, {.progress = options_.progress, .interrupt = &options_.interrupt, .threads = options_.threads});
     if (!proof.proved()) return seen("; the proof is undecided " + proof.undecided());
     if (const auto outcome = question_.outcome(proof.outcome); outcome != run.outcome)
       throw Error({"", 0, "--vary"}, "a run with another outcome than is proved",
@@ -217,12 +213,11 @@ Result threshold_result(const Question& question, const Threshold& found, const 
                {"how", "1", "type of the run, or closed form: proved without one", how}}};
   for (const auto& [name, end] : {std::pair("low", &found.low), std::pair("high", &found.high)}) {
     const std::string prefix(name);
-    for (Attribute& attribute : std::vector<Attribute>{{prefix, Decimal(end->run.value).value},
-                                                       {prefix + "_digits", end->run.value},
-                                                       {prefix + "_outcome", end->run.outcome},
-                                                       {prefix + "_proved", std::uint64_t{end->proved}},
-                                                       {prefix + "_how", end->how}})
-      group.attributes.push_back(std::move(attribute));
+    append(group.attributes, {{prefix, Decimal(end->run.value).value},
+                              {prefix + "_digits", end->run.value},
+                              {prefix + "_outcome", end->run.outcome},
+                              {prefix + "_proved", std::uint64_t{end->proved}},
+                              {prefix + "_how", end->how}});
   }
   result.groups.push_back(std::move(group));
   return result;

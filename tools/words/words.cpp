@@ -8,7 +8,6 @@
 #include <cmath>
 #include <concepts>
 #include <cstdint>
-#include <functional>
 #include <sstream>
 #include <type_traits>
 
@@ -28,11 +27,7 @@ WordParticles word_particles(const std::string& count, const std::string& masses
   if (!masses.empty()) {
     std::istringstream list(masses);
     for (std::string item; std::getline(list, item, ',');) {
-      try {
-        all.masses.emplace_back(checked_literal(item));
-      } catch (const std::invalid_argument&) {
-        throw Error({"", 0, "--masses"}, "not a mass", item, "give numbers above 0, with commas between");
-      }
+      all.masses.emplace_back(plain_decimal(item).value_or("0"));
       if (!(all.masses.back() > Decimal("0")))
         throw Error({"", 0, "--masses"}, "not a mass", item, "give numbers above 0, with commas between");
     }

@@ -1,16 +1,17 @@
 #pragma once
-// A proof that a run is right. Given the collisions of a run one by one, as pairs of neighbours, the checker computes
-// the world lines of all particles from the scene's own decimals, every number enclosed (precision/ball.hpp), and
-// checks what makes them the motion of the exact system. It shares no arithmetic with the engine that proposes the
-// collisions.
+// `Checker` proves that a run is right. It is given the collisions of the run one by one, as pairs of neighbours. From
+// the decimals of the scene it computes the world lines of all particles, every number enclosed in a ball
+// (precision/ball.hpp), and it checks the conditions under which these lines are the motion of the exact system. It
+// shares no arithmetic with the engine that proposes the collisions.
 //
-// World lines. Particle k flies along x = a_k + v_k t, t since the start, until its next collision. Two particles l, r
-// meet at T = (a_r - a_l)/w, w = v_l - v_r, and whatever impulse J they exchange,
+// World lines. Particle k flies along x = a_k + v_k t until its next collision; t is the time since the start. Let
+// w = v_l - v_r for two particles l and r. They meet at the time T = (a_r - a_l)/w, and whatever impulse J they
+// exchange,
 //
 //   (a, v)_l' = (a, v)_l - c_l ((a, v)_l - (a, v)_r),   (a, v)_r' = (a, v)_r + c_r ((a, v)_l - (a, v)_r),
 //
-// c_l = J/(m_l w), c_r = J/(m_r w): one linear map for places and velocities, since both lines go through the same
-// point. The time T does not enter.
+// with c_l = J/(m_l w) and c_r = J/(m_r w). Places and velocities have the same linear map, since the lines of both
+// particles, before and after, go through one point. The time T does not enter.
 //
 // README.md says what is checked at the start, at each collision and at a time to which the run is to be proved, and
 // proves that this is enough: also for walls, under gravity and for particles that merge or pass.

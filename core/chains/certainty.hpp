@@ -1,7 +1,8 @@
 #pragma once
-// `Certainty` tells by its deviations (watched_gap.hpp) whether the collisions of a chain with watched masses are those
-// of the exact system. The first one that may not be is entered in the account; afterwards the motion is that of
-// another system, and nothing more is estimated.
+// `Certainty` estimates whether a chain with watched masses makes the collisions of the exact system. It uses the
+// deviations of the gaps, estimates of how far rounding has moved each gap from the exact motion (watched_gap.hpp). The
+// first collision that may not be one of the exact system is entered in the account. From then on the run may follow
+// another motion, so nothing more is estimated.
 
 #include <algorithm>
 #include <cmath>
@@ -16,17 +17,18 @@
 
 namespace cradle {
 
-// How a gap moves at a time: since its local time, its size, its closing speed and the rate at which this grows.
+// How a gap moves at a given time: the time since its local time (`since`), its size, its closing speed, and the rate
+// at which the closing speed grows.
 template <Real T> struct GapMotion { T since, gap, closing, acceleration{0}; };
 
-// Gaps: TimedGaps of WatchedGap. A Motion gives the GapMotion of a slot at a time, motion(s, time); `motion.curved`:
-// some closing speeds change between collisions.
+// `Gaps` is a TimedGaps of WatchedGap. A `Motion` is called as motion(s, time) and returns the GapMotion of the slot s
+// at that time; `Motion::curved` says whether some closing speeds change between collisions.
 template <Real T, class Gaps> class Certainty {
   using N = DeviationNumber<T>;
   using Off = Deviation<N>;
 
  public:
-  // Which neighbours a collision moves: one that comes to rest on others does not move these.
+  // Says which neighbouring gaps a collision changes: a particle that comes to rest on others does not move those.
   struct Moved {
     bool left = true, right = true;
   };

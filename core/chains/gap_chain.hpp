@@ -1,22 +1,23 @@
 #pragma once
-// The chain in gaps and closing speeds: for neighbours l, r the gap g >= 0 and the closing speed w = v_l - v_r. A
-// collision transfers an impulse J from left to right and changes three gaps:
+// `GapChain` holds the particles as gaps and closing speeds: for two neighbours l and r the gap g >= 0 and the closing
+// speed w = v_l - v_r. A collision transfers an impulse J from left to right and changes three gaps:
 //
 //   w[i] -> w',   w[i-1] += J/m_l,   w[i+1] += J/m_r,   g[i] = 0 exactly.
 //
-// No gap is a difference of positions, so gaps keep their relative precision down to underflow, however small they are
-// against the size of the system (timed_gaps.hpp: how they are advanced, and how rounding acts).
+// No gap is computed as a difference of positions. So gaps keep their relative precision down to underflow, however
+// small they are compared with the system. timed_gaps.hpp says how gaps are advanced and how rounding acts on them.
 //
-// Under gravity (gravity.hpp) gaps to walls are parabolas of time, those to shaken walls other curves, and collisions
-// at them or beside them are made off the hot path; all others are as without it. Whether there is any of this is
-// asked only there.
+// Under gravity (gravity.hpp) the gap to a wall is a parabola in time; the gap to a shaken wall is another curve.
+// Collisions at such a gap or beside it are made off the hot path, all others as without gravity. Only code off the hot
+// path asks whether there is gravity or a shaken wall.
 //
-// Here are the collisions. The class stands on three others, each on the one before: the gaps held (held_gaps.hpp),
-// their positions and velocities (gap_places.hpp), and the ends of the active zone (gap_ends.hpp).
+// This file has the collisions. `GapChain` is derived from three classes, each of which is derived from the one before:
+// the gaps that are held (held_gaps.hpp), their positions and velocities (gap_places.hpp), and the ends of the active
+// zone (gap_ends.hpp).
 //
-// Rows are streamed (held_range.hpp). Velocities and positions come from the two anchors: the particles that end the
-// active zone, whose flight is known (anchor.hpp). On a ring the gap after the last slot is the first one; there
-// positions come from the centre of mass, velocities from the total momentum.
+// Particles of a row are added when they are hit (held_range.hpp). Velocities and positions are computed from two
+// anchors, particles at the two ends of the active zone whose flight is known (anchor.hpp). On a ring the gap after the
+// last slot is the first one; there positions come from the centre of mass, velocities from the total momentum.
 //
 // Several particles that rest on a wall, one on the other, are a pile: README.md (Piles) says what they do.
 

@@ -1,7 +1,7 @@
 #pragma once
-// The line of gaps of a chain in gaps: timed gaps with their closing speeds, the masses of the particles between them,
-// and the effect of a collision on three of them. The chain (gap_chain.hpp) or a segment, which is a copy of a part
-// (segments.hpp), handles its ends.
+// `GapLine` is the line of gaps of a `GapChain`. It holds the gaps with their local times and closing speeds, and the
+// masses of the particles between them, and it computes what a collision does to three gaps. Its ends are handled by
+// its owner: by the chain (gap_chain.hpp), or by a segment, which works on a copy of a part of the line (segments.hpp).
 
 #include <cstddef>
 #include <optional>
@@ -18,7 +18,7 @@
 
 namespace cradle {
 
-// Per-run data of a line whose masses are not watched: none.
+// Stands in for `Certainty` in a line whose masses are not watched; it holds nothing.
 struct NothingMore {
   static std::tuple<> state(auto&) { return {}; }
 };
@@ -34,7 +34,7 @@ template <Real T, class MassesOf> class GapLine {
       : gaps(start, particles.energy_to_lose()), masses(particles),
         exact_(cradle::far_apart(particles) && sums_can_be_exact<T>) {}
 
-  // Like another one, without any gaps yet.
+  // Makes a line like another one, with room for `slots` gaps but without any gap yet.
   explicit GapLine(const GapLine& other, std::size_t slots)
       : gaps(other.gaps.clock().start(), T(1)), masses(other.masses.without_slots()), exact_(other.exact_) {
     resemble(other, slots, 0);
@@ -50,7 +50,7 @@ template <Real T, class MassesOf> class GapLine {
   // Whether sums of closing speeds are exact.
   bool exact_sums() const { return watched && exact_; }
 
-  // ---- copies of a part (segments.hpp): with so many slots; slot s here is s + offset there
+  // ---- copies of a part of another line (segments.hpp); slot s of the copy is slot s + offset of the other line
   void resemble(const GapLine& other, std::size_t slots, std::ptrdiff_t offset) {
     gaps.resemble(other.gaps, slots);
     masses.resize(slots);

@@ -1,11 +1,12 @@
 #pragma once
-// The event loop: take the next collision, let the chain apply the law, update the three gaps concerned in the queue,
-// enter the loss in the ledger. Scalar, law and chain are types; everything else is in `review`, off the hot path.
+// The event loop takes the next collision, lets the chain apply the law, updates the queue for the three gaps that
+// change, and enters the loss in the ledger. The scalar, the law and the chain are template parameters. All rare work
+// is done between collisions, by `review`, off the hot path.
 //
-// The order of collisions is (exact time, position in the line). If the queue's keys cannot decide it, exact times are
-// compared among all collisions that might be first (ties.hpp).
+// The order of collisions is (exact time, position in the line). Where the queue's keys cannot decide which collision
+// is first, the exact times of all collisions that might be first are compared (ties.hpp).
 //
-// The calls of `advance` do not matter, only the initial state: same collisions, same bits.
+// A run makes the same collisions with the same bits, however often `advance` is called and up to whichever times.
 
 #include <concepts>
 #include <cstdint>
@@ -57,7 +58,8 @@ class Simulation {
     head_for(until);
     return make_collisions();
   }
-  // The same in segments (segments.hpp), unless the run may stop at a collision or the law has memory.
+  // Does the same in segments (segments.hpp). The plain loop is used instead if the run may stop at a collision, if the
+  // law has memory, or if anything falls or is shaken.
   template <class Segments>
   requires requires { typename Segments::Slab; }
   Status advance(const T& until, Segments& segments) {

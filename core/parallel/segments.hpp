@@ -1,28 +1,33 @@
 #pragma once
-// One run in segments: parts of the line that go through a time slab each alone, on several threads or, on one, in
-// the caches next to the processor. The result is that of the plain loop, bit for bit.
+// One run in segments. A segment is a part of the line that is computed alone for a time slab, a short interval of
+// time. Several threads take one segment each; a single thread takes one after the other, so that each stays in the
+// caches of the processor. The result is that of the plain loop, bit for bit.
 //
-// Why it is exact. A collision at the gap i reads and changes the gaps i - 1, i and i + 1, and every gap has a local
-// time of its own: what becomes of a gap depends on the collisions at it and beside it, in their order, and on nothing
-// else. A segment owns the gaps from one cut to the next and is computed on a copy of them with some ghosts on either
-// side, gaps of its neighbours as they were when the time slab began. What lies beyond the ghosts is missing, and what
-// is wrong for that reason moves inwards by one gap per collision at most. At each cut both sides keep a log of the
-// collisions at the last gap before it and the first one behind it: which of the two, exact time, closing speed.
+// Why the result is exact. A collision at the gap i reads and changes the gaps i - 1, i and i + 1, and every gap has a
+// local time of its own: what becomes of a gap depends on the collisions at it and beside it, in their order, and on
+// nothing else. A segment owns the gaps from one cut to the next. It works on a copy of these and of some gaps of its
+// neighbours on either side, the ghosts, as they were when the time slab began. Gaps beyond the ghosts are missing; the
+// errors that follow move inwards by at most one gap per collision. At each cut both sides log the collisions at the
+// last gap before the cut and at the first gap behind it: which of the two gaps it is, the exact time and the closing
+// speed.
 //
 //   If both logs of every cut are the same, the owned gaps of all segments together are those of the plain loop.
 //
-// Let both sides make their collisions in increasing order of (exact time, position), as is made sure of below, and
-// let the plain loop have made some collisions like them. It takes the first of those pending, at a gap that one side
-// owns, A say. There all gaps that A owns and the first one behind its cut have had the same collisions, so the
-// collision is pending in A as well, and is the next that A makes at a gap it owns, unless A makes one behind the cut
-// before it. That one is in the log, hence the next of the other side's there, at an earlier time than the plain
-// loop's: B, which makes collisions in order, has it pending already, and so has the plain loop, which would have taken
-// it. So the plain loop continues like the segments, to the end of the time slab.
+// Assume that both sides make their collisions in increasing order of (exact time, position); the last paragraph says
+// how this is ensured. Assume also that all collisions which the plain loop has made so far are those of the segments.
+// The plain loop then takes the first pending collision, K. Let A be the segment that owns its gap. So far all gaps
+// that A owns, and the first gap behind each of its cuts, have had the same collisions in A as in the plain loop. So K
+// is pending in A too, and it is the next collision that A makes at a gap that it owns, unless A first makes a
+// collision L at the gap behind a cut. L is in A's log. Since the logs agree, L is also the next collision there of the
+// segment B on the other side, at an earlier time than that of K. B makes its collisions in order, so L is already
+// pending in B and hence in the plain loop, which would have taken L and not K. So the plain loop takes the collisions
+// of the segments, up to the end of the time slab.
 //
-// What a time slab must not contain is left to the plain loop, which goes through that time slab instead: collisions
-// out of order (a gap below zero), a collision after which the origin moves, or a gap falls below the floor. Where logs
-// differ the segments on either side of the cut are joined and computed again, until no logs differ. None of this shows
-// in the result; how long time slabs are, where the cuts lie, and how many ghosts there are, is chosen for speed alone.
+// The plain loop computes the whole time slab instead of the segments in three cases: collisions are out of order (a
+// gap is below zero), the origin moves after a collision, or a gap falls below the gap floor. Where the two logs of a
+// cut differ, the segments beside it are joined and computed again; this is repeated until all logs agree. The lengths
+// of time slabs, the places of cuts and the number of ghosts are chosen for speed alone; none of this shows in the
+// result.
 
 #include <algorithm>
 #include <cmath>
@@ -41,12 +46,12 @@
 
 namespace cradle {
 
-// How segments are made. What is chosen here shows in how long a run takes, never in what it gives.
+// How segments are made. These choices affect how long a run takes, never its result.
 struct Segmentation {
-  std::size_t gaps = 0;          // owned by a segment, about; 0: as many as do well
+  std::size_t gaps = 0;          // about as many are owned by a segment; 0: a number is chosen
   std::size_t ghosts = 64;       // on either side
-  double collisions = 0;         // per gap in a time slab; 0: as many as do well
-  bool anywhere = false;         // also where the plain loop is sure to be quicker
+  double collisions = 0;         // per gap in a time slab; 0: a number is chosen
+  bool anywhere = false;         // whether segments are made even where the plain loop is quicker
   const Steps* steps = nullptr;  // fastest_steps() where that is linked (steps/steps.hpp); null: none
 };
 

@@ -1,11 +1,13 @@
 #pragma once
-// The event queue: one key per gap, updated in place, the next gap at the root of a binary tree of minima.
+// The event queue holds one key per gap in a binary tree of minima. Keys are updated in place; the root is the key of
+// the next gap.
 //
-// A key is a 64-bit integer: the bits of the non-negative double "time of the next collision, from the origin", with
-// the gap's slot in the low bits. Integer order is then time order to a relative resolution of 2^(bits - 52), and the
-// root names the next gap without a descent. If keys are equal or too close, the caller decides exactly: `contested`
-// says when, `for_each_before` lists the candidates. Keys from a rounded time (wide scalar types) may be wrong by two
-// units: `slack` allows for that.
+// A key is a 64-bit integer: the bits of a non-negative double, the time of the gap's next collision counted from the
+// origin, with the lowest b bits replaced by the gap's slot. So keys are in the order of times up to a relative
+// difference of 2^(b - 52), and the root contains the slot of the next gap: no search down the tree is needed. Where
+// the times of keys are too close to be told apart, the caller compares exact times: `contested` says when that is
+// necessary, and `for_each_before` lists the candidates. The keys of wide scalar types are made of rounded times, which
+// may be off by two units of the last bit that a key keeps of a time; `slack_` allows for that.
 
 #include <algorithm>
 #include <bit>
@@ -33,8 +35,8 @@ class EventQueue {
   Key next() const { return tree_[1]; }
   Slot slot(Key key) const { return key & mask_; }
 
-  // A negative time (an event before the origin, after a move) has its sign bit set and would sort last; its key sorts
-  // it first.
+  // A negative time (of a collision before the origin, after the origin has moved) has its sign bit set and would sort
+  // last; it gets the key of time 0, which sorts first.
   Key key(double due, Slot slot) const {
     return (static_cast<Key>(std::max<std::int64_t>(std::bit_cast<std::int64_t>(due), 0)) & ~mask_) | slot;
   }

@@ -1,40 +1,48 @@
 // Compares a proof with its run. A quantity that both have must be the same number, except for the rounding of the run.
-// This bounds that rounding, and finds the first quantity that differs by more: then the run or the program is wrong.
+// This file bounds that rounding, and finds the first quantity that differs by more than the bound. Then the run or the
+// program is wrong.
 //
-// That the run has made the collisions of the exact system, and these alone, is proved before anything is compared. So
-// its world lines go through the maps of the exact ones (checker.hpp), and its error is what it has rounded at each
-// collision, carried on by the maps that follow. One collision rounds three closing speeds by epsilon u at most, u the
-// largest speed that there can be, and its time by epsilon t; an error of a closing speed shifts all that is on one
-// side of the gap. With the room that the guards of a run have (observe/guards.hpp) that is, for every particle,
+// Before anything is compared, it is proved that the run has made the collisions of the exact system and no others. So
+// each collision maps the world lines of the run as it maps the exact ones (checker.hpp), and the error of the run is
+// what it has rounded at each collision, carried on by the maps of later collisions. Let u be the largest speed that
+// there can be. One collision rounds three closing speeds by epsilon u at most and its time t by epsilon t at most; an
+// error of a closing speed shifts all particles on one side of the gap. With the factor to spare that the guards of a
+// run have (observe/guards.hpp) the error of every particle is at most
 //
 //   Delta u  of velocities,   Delta (extent + u t)  of places,   Delta = 8 epsilon (C + N + 64)
 //
-// after C collisions of N particles, if the maps make no error larger than it was:
+// after C collisions of N particles, if no map makes an error larger than it was. There are two cases:
 //
-//   - velocities after a collision are means of those before (identical particles that bounce, all that merge or pass):
-//     then no error grows, nor does a speed, and u is that of the start;
-//   - particles of different masses bounce: then sum m_k delta_k^2 does not grow. What shifts all by delta is M delta^2
-//     there, hence |delta_k| <= delta sqrt(M/m_k), and u = sqrt(2 E_0/m_min).
+//   - Velocities after a collision are means of those before (identical particles that bounce, all particles that merge
+//     or pass). Then neither errors nor speeds grow, and u is the largest speed at the start.
+//   - Particles of different masses bounce. Then sum m_k delta_k^2 does not grow, where delta_k is the error of
+//     particle k. A shift of all particles by delta makes this sum M delta^2, where M is the mass of all; hence
+//     |delta_k| <= delta sqrt(M/m_k). Here u = sqrt(2 E_0/m_min), with the energy E_0 at the start.
 //
-// A reflecting wall multiplies a particle's errors, counted from its own line, by its restitution, at most 1: it is a
-// particle of infinite mass without errors. What walls give makes u larger: u is then the largest speed that a particle
-// has had from a wall, or sqrt(2 (E_0 + G)/m_min), G the energy given without that taken. A thermal wall is not linear:
-// it gives its own speed, but the time of the collision has errors, so that places have. Each collision with a wall
-// adds to its account, of speeds w and w' that are at most 2 u and off by Delta u, a momentum m (w + w') and energies
-// m (w + w') V, m (w^2 - w'^2)/2: with room for the rounding of these terms they are off by 4 M Delta u and 4 M u Delta
-// u.
+// A reflecting wall is a particle of infinite mass whose line has no error. It multiplies the errors of a particle,
+// counted from the line of the wall, by the restitution of the wall, which is at most 1. What walls give makes u
+// larger. Then u is at least the largest speed that a particle has had from a wall, and E_0 + G takes the place of E_0
+// above. G is the sum of what walls have given; what they have taken is not subtracted. A thermal wall does not act
+// linearly on errors: the speed that it gives has none, but the time of the collision has one, and so has the place of
+// the particle. Each collision with a wall, at a speed w before and w' after, adds a momentum m (w + w') and energies m
+// (w + w') V and m (w^2 - w'^2)/2 to the account of the wall. Both speeds are at most 2 u and off by at most Delta u.
+// With room for the rounding of these terms, the momentum is off by at most 4 M Delta u and each energy by at most 4 M
+// u Delta u.
 //
-// Under gravity E_0 + G is increased by what particles gain at most by falling, Sizes::fall_energy; free fall adds the
-// same to all velocities and places. How fast a falling particle meets a wall is not linear, as below.
+// Under gravity the most that particles can gain by falling, Sizes::fall_energy, is added to E_0 + G. Free fall adds
+// the same to all velocities and places, so it changes no error. The speed at which a falling particle meets a wall is
+// not linear; the last paragraph treats this.
 //
-// A gap of a run in gaps has no error of a place: it is as wrong as rounding makes it from its own size, and then as
-// its closing speed makes it, 2 Delta (gap + u t).
+// In a run in gaps no gap is computed from places, so their errors do not enter. The error of a gap is the rounding of
+// its own size and the error of its closing speed times the time, together at most 2 Delta (gap + u t).
 //
-// Energies: sqrt(2 E_0 M) Delta u + M (Delta u)^2/2 from the velocities and Delta E_0 from the sums. The time of a
-// collision with closing speed w: what its particles' places are off at that time, over w. Wet particles,
-// restitutions r(w), thermal walls and walls under gravity are not linear: what they make of an error shows in the
-// radii of balls, which grow as it does from roundings of at least the type of their midpoints; so many times wider
-// than that as the run's type is coarser, for each particle held, is allowed on top.
+// Energies are off by at most sqrt(2 E_0 M) Delta u + M (Delta u)^2/2 because of the velocities, and by Delta E_0
+// because of the sums. The time of a collision that closes at the speed w is off by the error of its particles' places
+// at that time, divided by w. Wet particles, restitutions r(w), thermal walls and walls under gravity do not act
+// linearly on errors. How much they enlarge an error shows in the radii of the balls of the proof: these grow in the
+// same way, from roundings of the type of their midpoints or larger ones. So the radius of a number is added to its
+// bound, times the ratio of the epsilon of the run's type to that of the midpoints, times N + 64 for the N particles
+// held.
 #pragma once
 
 #include <fmt/format.h>
@@ -62,7 +70,7 @@ struct Disagreement {
   long double bound = 0;
 };
 
-/// Up to which a run's numbers may be off.
+/// By how much the numbers of a run may be off.
 struct RunErrors {
   long double place = 0, speed = 0, energy = 0, mass = 0;
   long double gap = 0, of_gap = 0;                 // of_gap: for each unit of the gap
@@ -70,7 +78,7 @@ struct RunErrors {
   long double of_radius = 0;                       // and so many radii of the proof
 };
 
-/// Of a run in a type of this epsilon, `time` the largest that it has had to do with.
+/// The errors of a run in a type with this epsilon; `time` is the largest time that the run has computed with.
 inline RunErrors run_errors(const Sizes& of, std::uint64_t collisions, bool means, long double epsilon,
                             long double time, long double circumference) {
   const long double mass = of.mass,
@@ -79,7 +87,7 @@ inline RunErrors run_errors(const Sizes& of, std::uint64_t collisions, bool mean
   const long double fastest =
       std::max<long double>(means ? of.start_speed : std::sqrt(twice_energy / of.least_mass), of.wall_speed);
   const long double grown = means ? 1 : std::sqrt(mass / of.least_mass), speed = delta * fastest;
-  // Places were further out by as much as particles have flown.
+  // Places may have been further out, by the distance that particles have flown.
   const long double extent = of.place + circumference + 2 * fastest * time;
   return {grown * delta * (extent + fastest * time),
           grown * speed,

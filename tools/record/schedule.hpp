@@ -1,5 +1,5 @@
-// When a run is sampled: the times of the series, snapshots and other outputs of a scene, and their union, in the
-// working precision.
+// A `Schedule` has the times at which a run is sampled: those of the series, of the snapshots and of the other outputs
+// of a scene, and all of them together, in the working precision.
 #pragma once
 
 #include <optional>
@@ -11,7 +11,8 @@
 
 namespace cradle::tools {
 
-/// Increasing times and the decimals that they mean. Times that the type cannot distinguish become one, the first.
+/// Increasing times, each with the decimal that it stands for. Of several times that the type cannot distinguish, only
+/// the first is kept.
 class Times {
  public:
   Times() = default;
@@ -24,13 +25,14 @@ class Times {
   bool empty() const { return values_.empty(); }
   Number operator[](std::size_t k) const { return exact_.empty() ? Number{values_[k], nullptr} : exact_[k]; }
   Number back() const { return (*this)[size() - 1]; }
-  /// The place of the first time that is not before this one, or that is after it.
+  /// The index of the first time that is not before `time` (first_from), or of the first one that is after it
+  /// (first_after).
   std::size_t first_from(const Number& time) const;
   std::size_t first_after(const Number& time) const;
   bool hold(const Number& time) const;
   std::vector<double> rounded() const;
   std::optional<RunTime> find(const Number& time) const;
-  /// Of a time that is one of these.
+  /// The decimal of `time`, which must be one of these times.
   std::string_view decimal(const Number& time) const { return decimals_[first_from(time)]; }
 
  private:
@@ -46,7 +48,7 @@ class Times {
 struct MeasurementTimes {
   Times samples, tables;
 };
-/// What of it is due at one time.
+/// What of a measurement is due at one time.
 struct Due {
   bool sample = false;
   std::optional<double> table;  // its time
@@ -64,9 +66,9 @@ class Schedule {
   const Times& series() const { return of[row_number("series")].samples; }
   const Times& snapshots() const { return of[row_number("snapshots")].tables; }
   Due due(std::size_t row, const Number& time) const;
-  /// What a time of a run means: the decimal of the scene, or, of a collision, itself.
+  /// What a time of the run stands for: a decimal of the scene or, for the time of a collision, that time itself.
   RunTime meant(const Number& time) const;
-  /// The first time at which the run is recorded, or the first after another one.
+  /// The first time after `after` at which the run is recorded; the first of all if `after` is empty.
   std::optional<Number> next(const std::optional<Number>& after) const;
   const Number& last() const { return last_; }
   /// The decimal times that this stop of a run stands for. Points between the ends of a series need not be decimals:

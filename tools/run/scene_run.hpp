@@ -1,6 +1,6 @@
-// A run of a scene that its caller holds: it advances when it is asked to, its state can be read between, and its
-// tables go to a sink. `cradle run`, ensembles, proofs, thresholds and Python all hold this. Collisions, rows and bytes
-// do not depend on how it is advanced.
+// `SceneRun` is a run of a scene that is held by its caller. It advances when the caller asks it to, its state can be
+// read between these calls, and it writes its tables to a `Sink` (sink.hpp). `cradle run`, ensembles, proofs,
+// thresholds and Python all hold a `SceneRun`. Its collisions, rows and bytes are the same however it is advanced.
 #pragma once
 
 #include <cstdint>
@@ -15,8 +15,8 @@
 
 namespace cradle::tools {
 
-/// After an exception from a function of the caller, the run is at its last collision and can continue. Callers with
-/// several runs see to it that MPFR has the digits of the one that they call (set_digits).
+/// If a function of the caller (an observer, say) throws, the run stands at its last collision and can continue. MPFR
+/// has one precision per process: a caller with several runs must call set_digits for a run before it uses that run.
 class SceneRun {
  public:
   using Column = Moment::Column;  // of the particles, as in snapshots
@@ -29,8 +29,8 @@ class SceneRun {
   const Scene& scene() const { return scene_; }
   /// Throws Error for a time in the past or after the end, and if the run is over.
   virtual void advance(const Decimal& until) = 0;
-  /// Makes the next `n` collisions, or those up to `until` if these are fewer: then the run is at that time. Returns
-  /// the number of those that are left. Like `observe`, of runs for which RunOptions::held is true.
+  /// Makes the next `n` collisions. If there are fewer up to `until`, makes these, and the run is then at that time.
+  /// Returns how many of the `n` were not made. As `observe`, it is only for runs for which RunOptions::held is true.
   virtual std::uint64_t step(std::uint64_t n, const Decimal& until) = 0;
   /// Ends the run at its last collision: what it has recorded can then be written. Throws Error if it is over.
   virtual void stop() = 0;
@@ -49,7 +49,7 @@ class SceneRun {
 
   /// Gives the rows recorded so far to the sink.
   virtual void put_rows() = 0;
-  /// Saves all else from which the run can continue. Throws Error if it is over.
+  /// Saves all that the run needs, besides the rows, to continue. Throws Error if it is over.
   virtual void save(StateSink& to) = 0;
   /// Continues from there, with the rows that were saved beside it. Throws Error for the state of another run.
   virtual void load(StateSource& from) = 0;

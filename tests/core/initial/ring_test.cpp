@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cradle/core/base/portable_log.hpp"
+#include "cradle/core/base/counter_rng.hpp"
 #include "cradle/tests/core/fixtures.hpp"
 
 namespace cradle::test::ring_test {

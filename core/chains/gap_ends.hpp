@@ -55,7 +55,7 @@ template <Real T, class Masses> class GapEnds : public GapPlaces<T, Masses> {
   Walls<T> walls_at(const T& time) const {
     Walls<T> all = walls_;
     const auto carry = [&](Slot s) {
-      const Carried more = carried(s, time);
+      const WallImpulse more = carried(s, time);
       all.carry(more.end, more.energy, more.momentum);
     };
     if (field_.at_wall(particle(first()))) carry(first());
@@ -112,7 +112,7 @@ template <Real T, class Masses> class GapEnds : public GapPlaces<T, Masses> {
 
   // Enters in the accounts what a wall has given until now (see `carried`).
   void enter_carried(Slot s, const T& time) {
-    const Carried more = carried(s, time);
+    const WallImpulse more = carried(s, time);
     if (more.momentum == T(0)) return;
     walls_.carry(more.end, more.energy, more.momentum);
     line_.gaps.lose(s, T(-more.energy));
@@ -151,11 +151,11 @@ template <Real T, class Masses> class GapEnds : public GapPlaces<T, Masses> {
 
   // What a wall has given, until a local time, to a particle that rests on it, at this gap or with this gap below it in
   // a pile.
-  struct Carried {
+  struct WallImpulse {
     End end;
     T energy{0}, momentum{0};
   };
-  Carried carried(Slot s, const T& time) const {
+  WallImpulse carried(Slot s, const T& time) const {
     const End end = field_.piles() ? field_.pile_end() : walls_.left_of(particle(s)) ? End::left : End::right;
     if (s < first() || s > last() || !(line_.gaps[s].gap == T(0) && closing(s) == T(0))) return {end};
     const Pair<T> since = line_.gaps.since_start(s);

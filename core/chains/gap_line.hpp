@@ -226,10 +226,10 @@ template <Real T, class MassesOf> class GapLine {
 
   // The gains of the neighbours in a collision at the gap s. With exact sums the three closing speeds keep their sum:
   // the rest of the rounding is added to the larger gain, which is on the side of the lighter particle.
-  struct Handed {
+  struct SpeedGains {
     const T &left, &right;
   };
-  struct HandedExactly {
+  struct ExactSpeedGains {
     Pair<T> left, right;
   };
   [[gnu::always_inline]] auto handed(Slot s, const Outcome<T>& outcome) const {
@@ -237,14 +237,14 @@ template <Real T, class MassesOf> class GapLine {
       const Pair<T> before{closing(s), gaps[s].rest};
       const T over = exact_ ? T((before - outcome.closing - outcome.to_left - outcome.to_right).value()) : T(0);
       const bool both = outcome.to_left == outcome.to_right, left = outcome.to_right < outcome.to_left;
-      return HandedExactly{{outcome.to_left, both   ? T(over / T(2))
-                                             : left ? over
-                                                    : T(0)},
-                           {outcome.to_right, both   ? T(over / T(2))
-                                              : left ? T(0)
-                                                     : over}};
+      return ExactSpeedGains{{outcome.to_left, both   ? T(over / T(2))
+                                               : left ? over
+                                                      : T(0)},
+                             {outcome.to_right, both   ? T(over / T(2))
+                                                : left ? T(0)
+                                                       : over}};
     } else {
-      return Handed{outcome.to_left, outcome.to_right};
+      return SpeedGains{outcome.to_left, outcome.to_right};
     }
   }
 

@@ -61,7 +61,7 @@ class Simulation {
   // Does the same in segments (segments.hpp). The plain loop is used instead if the run may stop at a collision, if the
   // law has memory, or if anything falls or is shaken.
   template <class Segments>
-  requires requires { typename Segments::Slab; }
+  requires requires { typename Segments::TimeSlab; }
   Status advance(const T& until, Segments& segments) {
     head_for(until);
     return plain_only() ? make_collisions() : make_slabs(segments);
@@ -75,7 +75,7 @@ class Simulation {
   // The same in segments. The observer may read the counts, but not the particles: they are as they were before the
   // time slab.
   template <class Segments, class Observer>
-  requires requires { typename Segments::Slab; }
+  requires requires { typename Segments::TimeSlab; }
   Status advance(const T& until, Segments& segments, Observer&& observer) {
     const Observed observed(*this, until, observer);
     return plain_only() ? make_collisions() : make_slabs(segments);

@@ -47,10 +47,10 @@ template <Real T> class StickyGas {
   Status advance(const T& time) {
     time_ = time;
     elapsed_ = time - start_;
-    for (Lump& lump : held_) lump.x = place(lump);
+    for (MergedParticles& lump : held_) lump.x = place(lump);
     if (ring_) cut();
-    std::deque<Lump> before = std::exchange(held_, {});
-    for (const Lump& lump : before) push_right(lump);
+    std::deque<MergedParticles> before = std::exchange(held_, {});
+    for (const MergedParticles& lump : before) push_right(lump);
     return ring_ ? Status::reached : take_in_rows();
   }
 
@@ -124,7 +124,7 @@ template <Real T> class StickyGas {
     require_state(!held_.empty(), "no particles");
     const ParticleIndex count = particles_->count();
     ParticleIndex in_all = 0;
-    for (const Lump& lump : held_) {
+    for (const MergedParticles& lump : held_) {
       require_state(lump.holds_numbers() && lump.first >= 0 && lump.first < count && lump.count > 0 &&
                         lump.count <= (ring_ ? count - in_all : count - lump.first) && lump.heaviest >= 0 &&
                         lump.heaviest < count,
@@ -138,7 +138,7 @@ template <Real T> class StickyGas {
   }
 
  private:
-  struct Lump {                   // particles that have merged
+  struct MergedParticles {        // particles that have merged
     T mass, moment, momentum, x;  // moment: at the start; x: at the time advanced to
     ParticleIndex first, count, heaviest;
     T greatest;  // mass of the heaviest particle
@@ -153,41 +153,41 @@ template <Real T> class StickyGas {
     }
   };
 
-  Lump single(ParticleIndex b) const {
+  MergedParticles single(ParticleIndex b) const {
     const T m = particles_->mass(b);
-    Lump lump{m, m * particles_->position(b), m * particles_->velocity(b), T(0), b, 1, b, m};
+    MergedParticles lump{m, m * particles_->position(b), m * particles_->velocity(b), T(0), b, 1, b, m};
     lump.x = place(lump);
     return lump;
   }
-  T place(const Lump& c) const { return (c.moment + c.momentum * elapsed_) / c.mass; }
-  static T velocity(const Lump& c) { return c.momentum / c.mass; }
+  T place(const MergedParticles& c) const { return (c.moment + c.momentum * elapsed_) / c.mass; }
+  static T velocity(const MergedParticles& c) { return c.momentum / c.mass; }
 
   // Particles of equal velocity never meet, even if rounding of distant positions says so.
-  static bool met(const Lump& left, const Lump& right) {
+  static bool met(const MergedParticles& left, const MergedParticles& right) {
     return !(left.x < right.x) && velocity(right) < velocity(left);
   }
-  void push_right(Lump lump) {
+  void push_right(MergedParticles lump) {
     for (; !held_.empty() && met(held_.back(), lump); held_.pop_back()) lump = merged(held_.back(), lump);
     held_.push_back(std::move(lump));
   }
-  void push_left(Lump lump) {
+  void push_left(MergedParticles lump) {
     for (; !held_.empty() && met(lump, held_.front()); held_.pop_front()) lump = merged(lump, held_.front());
     held_.push_front(std::move(lump));
   }
-  Lump merged(const Lump& left, const Lump& right) {
+  MergedParticles merged(const MergedParticles& left, const MergedParticles& right) {
     const T mass = left.mass + right.mass, closing = velocity(left) - velocity(right);
     lost_.add(left.mass * (right.mass / mass) * closing * closing / T(2));
     ++counts_.merges;
     ++counts_.collisions;
-    const Lump& name = left.greatest < right.greatest ? right : left;
-    Lump both{mass,
-              left.moment + right.moment,
-              left.momentum + right.momentum,
-              T(0),
-              left.first,
-              left.count + right.count,
-              name.heaviest,
-              name.greatest};
+    const MergedParticles& name = left.greatest < right.greatest ? right : left;
+    MergedParticles both{mass,
+                         left.moment + right.moment,
+                         left.momentum + right.momentum,
+                         T(0),
+                         left.first,
+                         left.count + right.count,
+                         name.heaviest,
+                         name.greatest};
     both.x = place(both);
     return both;
   }
@@ -216,7 +216,7 @@ template <Real T> class StickyGas {
   // Rotates the ring so that it is cut between two clusters.
   void cut() {
     CompensatedSum<T> mass_sum, moment_sum;
-    for (const Lump& lump : held_) {
+    for (const MergedParticles& lump : held_) {
       mass_sum.add(lump.mass);
       moment_sum.add(lump.mass * lump.x);
     }
@@ -226,7 +226,7 @@ template <Real T> class StickyGas {
     T least(0), passed(0);
     std::size_t lowest = 0;
     for (std::size_t k = 0; k + 1 < held_.size(); ++k) {
-      const Lump& lump = held_[k];
+      const MergedParticles& lump = held_[k];
       height.add(lump.mass * (lump.x - per_mass * (passed + lump.mass / T(2)) - middle));
       passed += lump.mass;
       if (height.value() < least) least = height.value(), lowest = k + 1;
@@ -242,7 +242,7 @@ template <Real T> class StickyGas {
   Policy<T> policy_;
   bool ring_;
   T start_, time_, elapsed_{0};
-  std::deque<Lump> held_;  // from left to right
+  std::deque<MergedParticles> held_;  // from left to right
   Counts counts_;
   Ledger<T> lost_;
   Account<T> account_;  // always empty: without events none can be late

@@ -74,7 +74,7 @@ template <Real T> class ClusterSegment {
   }
 
   // Copies what belongs to the segment; false where that is nothing, or where there are not enough particles around it.
-  bool take(const Chain& chain, const Own& own, std::size_t ghosts, Report& report) {
+  bool take(const Chain& chain, const OwnedGaps& own, std::size_t ghosts, Report& report) {
     report.cells.clear(), report.carried.clear();
     const auto& cells = chain.line();
     Slot there = own.first;
@@ -119,7 +119,7 @@ template <Real T> class ClusterSegment {
   }
 
   // Puts the segment's own cells into `after`, from its first slot on, and from the chain's first one behind the seam.
-  void give(const Chain& chain, const Own& own, Gaps& after, Report& report) const {
+  void give(const Chain& chain, const OwnedGaps& own, Gaps& after, Report& report) const {
     report.lost = line_.gaps.ledger();
     // The seam may have been taken over by what is left of it.
     const bool behind_seam = own.first + own.gaps > chain.last() + 1 && seam_ < own_first_;
@@ -161,7 +161,7 @@ template <Real T> class ClusterSegment {
   using Collision = ClusterCollision<T>;
   static constexpr Slot first_ = 2;
 
-  template <class Visit> static void each_slot(const Chain& chain, const Own& own, Visit visit) {
+  template <class Visit> static void each_slot(const Chain& chain, const OwnedGaps& own, Visit visit) {
     Slot s = own.first;
     for (std::size_t k = 0; k < own.gaps; ++k, s = s == chain.last() ? chain.first() : s + 1) visit(s);
   }

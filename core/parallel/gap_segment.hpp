@@ -53,7 +53,7 @@ template <Real T, class Masses> class GapSegment {
   }
 
   // Copies what belongs to the segment. Returns true: unlike clusters, gaps never vanish.
-  bool take(const Chain& chain, const Own& own, std::size_t ghosts, Report& report) {
+  bool take(const Chain& chain, const OwnedGaps& own, std::size_t ghosts, Report& report) {
     report.to_left.at_end.clear(), report.to_right.at_end.clear();
     ring_first_ = static_cast<std::ptrdiff_t>(chain.first());
     ring_ = chain.on_ring() ? static_cast<std::ptrdiff_t>(chain.last() + 1 - chain.first()) : 0;
@@ -101,7 +101,7 @@ template <Real T, class Masses> class GapSegment {
   }
 
   // Puts the segment's own gaps into `after`.
-  void give(const Chain&, const Own&, Gaps& after, Report& report) const {
+  void give(const Chain&, const OwnedGaps&, Gaps& after, Report& report) const {
     report.lost = line_.gaps.ledger();
     // At the end of a row the gap beside the front is held too.
     const Slot first = left_end_ ? std::max(first_, std::min(own_first_, reached_left_ - 1)) : own_first_;

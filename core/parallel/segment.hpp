@@ -22,7 +22,7 @@
 namespace cradle {
 
 // The gaps that a segment owns, by slots of the chain, around the seam of a ring if need be.
-struct Own {
+struct OwnedGaps {
   Slot first;
   std::size_t gaps;
 };
@@ -66,8 +66,8 @@ template <class Law, class Chain> class Segment {
   // Makes all collisions up to the local time `stop`, fewer than `most`, on a copy of a part of the chain, and puts
   // what is the segment's own into `after`, at the chain's slots. Several segments of one chain may do so at once.
   // `steps` may be null.
-  void run(const Chain& chain, const Law& law, const Own& own, std::size_t ghosts, const T& stop, std::uint64_t most,
-           const Steps* steps, typename Chain::Line::Gaps& after, Report& report) {
+  void run(const Chain& chain, const Law& law, const OwnedGaps& own, std::size_t ghosts, const T& stop,
+           std::uint64_t most, const Steps* steps, typename Chain::Line::Gaps& after, Report& report) {
     if constexpr (Stepped<Law, Part>::possible)
       if (steps != nullptr && take(chain, own, ghosts, report)) {
         if (part_.is_ring()) report.pace.rest = 0;  // Segments is patient enough
@@ -78,27 +78,27 @@ template <class Law, class Chain> class Segment {
       }
     if (!begin(chain, own, ghosts, report)) return;
     // Observers are given exact times; without one nobody pays for the log.
-    Made made = report.observe ? make_collisions<true>(law, stop, most, report)
-                               : make_collisions<false>(law, stop, most, report);
-    if (made == Made::contested) {
+    Finish made = report.observe ? make_collisions<true>(law, stop, most, report)
+                                 : make_collisions<false>(law, stop, most, report);
+    if (made == Finish::contested) {
       begin(chain, own, ghosts, report);
       made = make_collisions<true>(law, stop, most, report);
     }
-    report.plain = made == Made::for_plain;
+    report.plain = made == Finish::for_plain;
     if (!report.plain && !report.nothing_left) part_.give(chain, own, after, report);
   }
 
  private:
-  enum class Made { all, contested, for_plain };
+  enum class Finish { all, contested, for_plain };
 
   // Takes what is to be computed; false if there is nothing.
-  bool take(const Chain& chain, const Own& own, std::size_t ghosts, Report& report) {
+  bool take(const Chain& chain, const OwnedGaps& own, std::size_t ghosts, Report& report) {
     report.left.clear(), report.right.clear(), report.observed.clear();
     report.nothing_left = report.plain = report.in_steps = false;
     report.counts = {};
     return part_.take(chain, own, ghosts, report);
   }
-  bool begin(const Chain& chain, const Own& own, std::size_t ghosts, Report& report) {
+  bool begin(const Chain& chain, const OwnedGaps& own, std::size_t ghosts, Report& report) {
     const bool some = take(chain, own, ghosts, report);
     if (some) fill_queue();
     return some;
@@ -125,7 +125,7 @@ template <class Law, class Chain> class Segment {
   }
 
   // The event loop of a segment.
-  template <bool exact> Made make_collisions(const Law& law, const T& stop, std::uint64_t most, Report& report) {
+  template <bool exact> Finish make_collisions(const Law& law, const T& stop, std::uint64_t most, Report& report) {
     const double latest = part_.queue_time(stop);
     const EventQueue::Key certainly_before = queue_.certainly_before(latest);
     const EventQueue::Key possibly_before = queue_.possibly_before(latest);
@@ -133,7 +133,7 @@ template <class Law, class Chain> class Segment {
     T time = T(0);
     Slot before = 0;  // slot of the collision before
     Counts counts;
-    const auto end = [&](Made made) {
+    const auto end = [&](Finish made) {
       report.counts = counts;
       return made;
     };
@@ -141,24 +141,24 @@ template <class Law, class Chain> class Segment {
       const EventQueue::Key next = queue_.next();
       Slot s = queue_.slot(next);
       if (next >= certainly_before) [[unlikely]] {
-        if (next > possibly_before) return end(Made::all);
+        if (next > possibly_before) return end(Finish::all);
         const bool contested = queue_.contested();
-        if (contested && !exact) return Made::contested;
+        if (contested && !exact) return Finish::contested;
         if (contested) s = ties_.first(queue_, part_, made);
-        if (!(part_.due(s) <= stop)) return end(Made::all);
+        if (!(part_.due(s) <= stop)) return end(Finish::all);
       }
       if constexpr (exact) {
         if (queue_.contested()) {
-          if (part_.across_seam()) return Made::for_plain;  // positions are not in order there
+          if (part_.across_seam()) return Finish::for_plain;  // positions are not in order there
           s = ties_.first(queue_, part_, made);
         }
         const T now = part_.due(s);
-        if (made > 0 && (now < time || (now == time && s < before))) return Made::for_plain;
+        if (made > 0 && (now < time || (now == time && s < before))) return Finish::for_plain;
         time = now;
         before = s;
       } else {
         if (next <= passed || queue_.close(next, part_.left(s)) || queue_.close(next, part_.right(s)))
-          return Made::contested;
+          return Finish::contested;
         passed = queue_.no_later_than(next);
         time = part_.due(s);
       }
@@ -167,11 +167,11 @@ template <class Law, class Chain> class Segment {
       queue_.replace(collision.left, collision.due_left, s, collision.due, collision.right, collision.due_right);
       const Outcome<T>& outcome = collision.outcome;
       if (collision.notice != Notice::none && is_for_plain(collision.notice)) [[unlikely]]
-        return Made::for_plain;
+        return Finish::for_plain;
       if (own || !Ledger<T>::in_any_order) part_.lose(s, outcome.energy_lost);
       if (exact && report.observe) log(outcome, own, report);
       if (!own) [[unlikely]] {
-        if (report.nothing_left) return end(Made::all);
+        if (report.nothing_left) return end(Finish::all);
         continue;
       }
       ++counts.collisions;
@@ -179,7 +179,7 @@ template <class Law, class Chain> class Segment {
       counts.merges += outcome.event == Event::merge;
       report.last_collision = time;
     }
-    return Made::for_plain;
+    return Finish::for_plain;
   }
 
   Part part_;

@@ -68,7 +68,7 @@ requires(!LawWithMemory<Law, typename Chain::Scalar>) class Segments {
   }
 
   // What a time slab has made.
-  struct Slab {
+  struct TimeSlab {
     Counts counts;
     T last_collision{0};
   };
@@ -110,7 +110,8 @@ requires(!LawWithMemory<Law, typename Chain::Scalar>) class Segments {
 
   // Makes all collisions up to the local time `stop`, fewer than `most` of them; nothing where that is for the plain
   // loop. `observer` may be empty.
-  std::optional<Slab> make(Chain& chain, const Law& law, const T& stop, std::uint64_t most, const Observer& observer) {
+  std::optional<TimeSlab> make(Chain& chain, const Law& law, const T& stop, std::uint64_t most,
+                               const Observer& observer) {
     if (chain.cramped(how_.ghosts)) {
       chain.make_room();
       weights_.clear();
@@ -138,7 +139,7 @@ requires(!LawWithMemory<Law, typename Chain::Scalar>) class Segments {
       // Steps are quicker than the plain loop on a whole line too.
       if (own_.size() < 2 && !todo.empty() && (!in_steps() || chain.on_ring())) return give_up(chain);
     }
-    Slab slab;
+    TimeSlab slab;
     std::uint64_t largest = 0;
     bool first = true;
     for (const Report& report : reports_) {
@@ -170,7 +171,7 @@ requires(!LawWithMemory<Law, typename Chain::Scalar>) class Segments {
   static constexpr std::size_t least_on_ring = 100;  // gaps, for steps on a ring without cuts to pay
   static constexpr double least_observed = 1 << 14;  // collisions in a time slab, if there are as many
 
-  std::optional<Slab> give_up(const Chain& chain) {
+  std::optional<TimeSlab> give_up(const Chain& chain) {
     const std::size_t held = chain.last() + 1 - chain.first();
     ++statistics_.given_up;
     failed_ = true;
@@ -256,7 +257,7 @@ requires(!LawWithMemory<Law, typename Chain::Scalar>) class Segments {
     const auto begin = static_cast<std::size_t>(std::find(kept.begin(), kept.end(), 1) - kept.begin());
     if (begin == count) return own_.resize(1), std::vector<std::size_t>{0};
     std::vector<std::size_t> again;
-    std::vector<Own> own;
+    std::vector<OwnedGaps> own;
     std::vector<Report> reports;
     for (std::size_t j = 0; j < count; ++j) {
       const std::size_t k = (begin + j) % count;
@@ -287,7 +288,7 @@ requires(!LawWithMemory<Law, typename Chain::Scalar>) class Segments {
   };
   std::vector<Weight> weights_;                                 // of the last time slab
   std::vector<std::unique_ptr<Segment<Law, Chain>>> segments_;  // one for each worker
-  std::vector<Own> own_;
+  std::vector<OwnedGaps> own_;
   std::vector<Report> reports_;
   std::optional<typename Chain::Line::Gaps> after_;  // the chain's gaps after the time slab
   ObservedInOrder<typename Part::Observed> in_order_;

@@ -32,13 +32,13 @@ template <Real T> Verdict verdict(const std::vector<Margin<T>>& margins, const T
 }
 
 // The best state at one restitution.
-template <Real T> struct Found {
+template <Real T> struct BestState {
   Verdict verdict = Verdict::none;
   Pairs<T> pairs{};
 };
 
-template <Real T> Found<T> find(const System<T>& system, const T& r, const T& tolerance) {
-  Found<T> best;
+template <Real T> BestState<T> find(const System<T>& system, const T& r, const T& tolerance) {
+  BestState<T> best;
   const auto closing = [&](const std::vector<T>& speeds) {
     std::vector<T> w = speeds;
     for (const std::size_t letter : system.word) {
@@ -66,7 +66,7 @@ template <Real T> System<T> in_order_of_time(System<T> system, const T& r, const
   const std::size_t gaps = system.shares.left.size(), length = system.word.size();
   T rate(1);
   const auto flights = [&](const System<T>& of) {
-    const Found<T> found = find(of, r, tolerance);
+    const BestState<T> found = find(of, r, tolerance);
     if (found.verdict == Verdict::none) return std::vector<T>();
     const State<T> state = state_of(of, found.pairs);
     rate = state.growth * state.lambda;

@@ -80,7 +80,7 @@ void prove_end(const Prover<B, T>& prover, const System<Q>& quick, const Q& insi
     // A little apart, so that the long type sees what the short one saw.
     const T off = (T(to_double(outside)) - T(to_double(inside))) / T(1'000'000'000);
     const T yes = T(to_double(close.low)) - off, no = T(to_double(close.high)) + off;
-    const Found<T> at = find(prover.system, yes, T(0));
+    const BestState<T> at = find(prover.system, yes, T(0));
     end.at = yes;
     goal = yes;
     if (at.verdict == Verdict::exists) {
@@ -109,7 +109,7 @@ std::vector<Range<T>> ranges(const Prover<B, T>& prover, const System<Q>& quick,
     if (which == 1 && runs[0].verdict == Verdict::degenerate) run.first = 0;
     Range<T> range;
     range.middle = grid_point<T>((run.first + run.last) / 2, points);
-    Found<T> found = find(prover.system, range.middle, T(0));
+    BestState<T> found = find(prover.system, range.middle, T(0));
     if (found.verdict != Verdict::exists) continue;
     range.pairs = std::move(found.pairs);
     const auto grid = [&](std::size_t k) { return grid_point<Q>(k, points); };

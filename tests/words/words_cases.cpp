@@ -116,7 +116,7 @@ TEST_F(Words, ExistAsRationalArithmeticDecides) {
     ASSERT_NO_THROW(exactly = test::exists_rationally(word, masses, test::Rational(thousandths, 1000)));
     const Prover<Exact, Real> here(word, shares(in_real, {}), shares(in_balls, {}));
     const Exact ball = Exact(thousandths) / Exact(1000);
-    Found<Real> found = find(here.system, ball.middle(), Real(0));
+    BestState<Real> found = find(here.system, ball.middle(), Real(0));
     ASSERT_EQ(found.verdict == Verdict::exists, exactly);
     // What exists is proved at this restitution. Slowly: what is out of the order of time loses digits.
     ASSERT_TRUE(!exactly || here.holds(ball, found.pairs, number("1e-100")));
@@ -153,7 +153,7 @@ TEST_F(Words, HappenAsTheyAreWritten) {
     const Word word = read_word(text, 3);
     System<Real> system(word, equal<Real>(4));
     const Real r = number("0.07");
-    const Found<Real> found = find(system, r, Real(0));
+    const BestState<Real> found = find(system, r, Real(0));
     ASSERT_EQ(found.verdict, Verdict::exists) << text;
     const Start<Real> start = start_of(system, r, found.pairs);
     std::vector<Real> g = start.gaps, w = start.speeds;

@@ -64,7 +64,7 @@ struct Cells {
 static_assert(sizeof(Gap<double>) == sizeof(Four));
 
 // What is known of all collisions of a step.
-struct Made {
+struct Totals {
   Four flown = all(StepLine::never), own_flown = flown;  // least times since the collision before: beside, and own
   Four gap = flown;                                      // least gaps beside
   Four latest;
@@ -78,7 +78,7 @@ struct Made {
 };
 
 // The gaps beside the collisions: g -= w since, w += gain, due anew.
-HWY_INLINE Cells kick(const Cells& before, const Four& since, const Four& x, const Four& gain, Made& made) {
+HWY_INLINE Cells kick(const Cells& before, const Four& since, const Four& x, const Four& gain, Totals& made) {
   Cells now;
   now.gap = before.gap - before.closing * since;
   now.time = x;
@@ -124,7 +124,7 @@ HWY_INLINE void fill_up(StepLine& line, const Local& l, bool with_outcomes) {
 // Makes four collisions of a pass from number k on; the last ones may be one and the same. They are so far apart that
 // they touch different gaps, and all gaps are read before any is written.
 template <StepLaw law, bool unequal>
-HWY_INLINE void collide(const StepLine& line, Local& l, const StepTask& task, std::size_t k, double end, Made& made) {
+HWY_INLINE void collide(const StepLine& line, Local& l, const StepTask& task, std::size_t k, double end, Totals& made) {
   const Places4 places(l, l.first + k);
   const Cells own = Cells::at(places, 0), left = Cells::at(places, -1), right = Cells::at(places, 1);
   const Four x = own.due, w = own.closing;
@@ -169,7 +169,7 @@ HWY_INLINE void collide(const StepLine& line, Local& l, const StepTask& task, st
 
 // Enters the collisions of a pass in the ledger (ledger.hpp), by their closing speeds in `struck`.
 template <StepLaw law, bool unequal>
-HWY_INLINE void enter(const StepLine& line, const Local& l, const StepTask& task, Made& made) {
+HWY_INLINE void enter(const StepLine& line, const Local& l, const StepTask& task, Totals& made) {
   const Lanes d;
   hn::StoreU(hn::Zero(d), d, l.struck + l.firsts);
   if (unequal) hn::StoreU(hn::Zero(d), d, l.struck_mass + l.firsts);
@@ -192,7 +192,7 @@ HWY_INLINE void enter(const StepLine& line, const Local& l, const StepTask& task
 
 // The collisions of a step, where numbers are doubles.
 template <StepLaw law, bool unequal> struct Doubles {
-  Made made;
+  Totals made;
 
   HWY_INLINE Doubles(const StepTask&, const StepResult& before) : made{.latest = all(before.last)} {}
 

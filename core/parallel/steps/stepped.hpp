@@ -62,7 +62,7 @@ requires(StepNumbers<T>::template by_law<Law> && !Watched<Masses>) struct Steppe
  private:
   static constexpr bool equal = std::same_as<Masses, IdenticalMasses<T>>;
 
-  struct Made {
+  struct Totals {
     Counts counts;
     T last = Numbers::of(-StepLine::never, 0);
   };
@@ -203,7 +203,7 @@ requires(StepNumbers<T>::template by_law<Law> && !Watched<Masses>) struct Steppe
   }
 
   struct Kept {
-    Made made;
+    Totals made;
     Ledger<T> ledger;
     typename Part::Edges edges;
     std::size_t left, right, at_left, at_right, observed;  // lengths of logs
@@ -213,7 +213,7 @@ requires(StepNumbers<T>::template by_law<Law> && !Watched<Masses>) struct Steppe
   Part* part_ = nullptr;
   const Law* law_ = nullptr;
   Report* report_ = nullptr;
-  Made made_;  // at edges; by other laws all that is below the cut-off
+  Totals made_;  // at edges; by other laws all that is below the cut-off
   Kept kept_;
 };
 

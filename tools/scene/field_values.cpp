@@ -14,7 +14,6 @@ namespace {
 
 constexpr std::string_view not_finite[] = {"inf", "+inf", "-inf", "nan", "+nan", "-nan"};
 
-template <class T> constexpr bool is_choice = std::is_enum_v<T>;
 template <class T> constexpr bool is_optional = false;
 template <class T> constexpr bool is_optional<std::optional<T>> = true;
 
@@ -142,7 +141,7 @@ void read(const Field& field, const Value& value, Scene& scene, std::vector<std:
 }
 
 template <class E>
-requires is_choice<E>
+requires std::is_enum_v<E>
 void read(const Field& field, const Value& value, Scene& scene, E& target) {
   if (value.kind != Value::Kind::text) refuse(field, value, scene, "wrong type");
   const auto names = choices_of(field);
@@ -192,7 +191,7 @@ std::optional<std::string> written(const Field& field, const List& list) {
   return text + ']';
 }
 template <class E>
-requires is_choice<E> std::optional<std::string> written(const Field& field, const E& value) {
+requires std::is_enum_v<E> std::optional<std::string> written(const Field& field, const E& value) {
   return in_quotes(choices_of(field).at(static_cast<std::size_t>(value)));
 }
 template <class T> std::optional<std::string> written(const Field& field, const std::optional<T>& value) {

@@ -332,8 +332,7 @@ const Field fields_after_walls[] = {
     {"run.stop_gap", run_of<&Run::stop_gap>, "l", "", "(0, inf)", &stop,
      "the run ends when a gap, or the height of a rebound from a floor, is below this, proved to collapse or not; "
      "without it, where a collapse is proved, followed until its time is settled, and of more than 16 particles in "
-     "gaps, "
-     "without gravity or shaken walls, where one is below 2^-100 of a gap beside it at the start, without proof"},
+     "gaps, without gravity or shaken walls, where one is below 2^-100 of a gap beside it at the start, without proof"},
 
     {"output.series.every", output_of<&Output::series, &Series::every>, "t", "", "(0, inf)", &always,
      "time between samples of the series, at most 1e7 of them"},

@@ -29,26 +29,19 @@ std::string_view nearest_key(std::string_view key) {
   return nearest;
 }
 
-// A key that users may expect in this table, and what to do instead.
-struct OtherName {
-  std::string_view table, name, advice;
+// Keys that users may expect, and what to do instead.
+struct OtherNames {
+  std::vector<std::string_view> keys;
+  std::string_view advice;
 };
-constexpr std::string_view rods_as_points =
-    "particles are points; a rod of the length d is one whose distances to all that it meets are shorter by d";
-constexpr OtherName other_names[] = {
-    {"initial", "temperature", "give initial.variance, the temperature over the mass: T for particles of mass 1"},
-    {"initial", "diameter", rods_as_points},
-    {"initial", "diameters", rods_as_points},
-    {"initial", "radius", rods_as_points},
-    {"initial", "size", rods_as_points},
-    {"law", "epsilon", "did you mean law.restitution?"},
-    {"law", "e", "did you mean law.restitution?"},
-    {"law", "r", "did you mean law.restitution?"},
-    {"gravity", "g", "did you mean gravity.acceleration?"},
-    {"initial", "n", "did you mean initial.particles?"},
-    {"initial", "N", "did you mean initial.particles?"},
-    {"run", "time", "did you mean run.until?"},
-    {"run", "end", "did you mean run.until?"},
+const OtherNames other_names[] = {
+    {{"initial.temperature"}, "give initial.variance, the temperature over the mass: T for particles of mass 1"},
+    {{"initial.diameter", "initial.diameters", "initial.radius", "initial.size"},
+     "particles are points; a rod of the length d is one whose distances to all that it meets are shorter by d"},
+    {{"law.epsilon", "law.e", "law.r"}, "did you mean law.restitution?"},
+    {{"gravity.g"}, "did you mean gravity.acceleration?"},
+    {{"initial.n", "initial.N"}, "did you mean initial.particles?"},
+    {{"run.time", "run.end"}, "did you mean run.until?"},
 };
 
 void refuse_unknown_key(std::string_view key, const Value& value) {
@@ -62,8 +55,8 @@ void refuse_unknown_key(std::string_view key, const Value& value) {
       throw Error(value.place, "wrong type", describe(value), fmt::format("give a table, such as {} = ...", field.key));
     }
   }
-  for (const OtherName& other : other_names)
-    if (key == fmt::format("{}.{}", other.table, other.name))
+  for (const OtherNames& other : other_names)
+    if (std::ranges::find(other.keys, key) != other.keys.end())
       throw Error(value.place, "unknown key", describe(value), other.advice);
   const auto nearest = nearest_key(key);
   throw Error(value.place, "unknown key", describe(value),

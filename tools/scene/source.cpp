@@ -12,12 +12,9 @@ namespace {
 
 constexpr std::string_view blanks = " \t\r\n";
 constexpr std::string_view literal_characters = "0123456789abcdefABCDEFinoxINOX_+-.";
+constexpr std::string_view decimal_characters = "0123456789+-_.eE";
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
-
-bool is_decimal_character(char c) {
-  return is_digit(c) || std::string_view("+-_.eE").find(c) != std::string_view::npos;
-}
 
 // The end of the comment or string that begins at `i`; `i` if none begins there.
 std::size_t skip_comment_or_string(std::string_view text, std::size_t i) {
@@ -72,9 +69,7 @@ std::string quote_wide_literals(std::string_view text) {
       i = end;
       continue;
     }
-    const auto not_part = [](char c) { return !is_decimal_character(c); };
-    end = static_cast<std::size_t>(std::find_if(text.begin() + static_cast<std::ptrdiff_t>(i), text.end(), not_part) -
-                                   text.begin());
+    end = std::min(text.find_first_not_of(decimal_characters, i), text.size());
     const auto literal = text.substr(i, end - i);
     if (literal.empty()) {
       if (blanks.find(text[i]) == blanks.npos) before = text[i];

@@ -43,8 +43,7 @@ std::string shortened(const std::string& value) {
 std::string effective_toml(const Scene& scene) {
   std::string text;
   std::string_view open_table;
-  const auto all = values(scene, true);
-  for (const auto& [key, value] : all) {
+  for (const auto& all = values(scene, true); const auto& [key, value] : all) {
     const auto dot = key.find('.');
     const std::string_view table = dot == key.npos ? std::string_view() : std::string_view(key).substr(0, dot);
     if (table != open_table) {

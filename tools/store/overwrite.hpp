@@ -14,8 +14,7 @@ namespace cradle::tools {
 enum class Force { no, yes };
 
 /// Says in a result of `certify`, say, how it was made: `command` has the options that the scene does not have
-/// ("certify --digits
-/// 50"), and `requested` is the scene as it was given, whose precision the command may have raised.
+/// ("certify --digits 50"), and `requested` is the scene as it was given, whose precision the command may have raised.
 void say_how_made(Result& result, const std::string& command, const Scene& requested);
 
 /// Throws Error (Exit::bad_input) if `file` is there and holds anything but a result of this command and scene; without

@@ -51,9 +51,8 @@ Scene extended(Scene scene, const std::string& until, const std::string& file) {
   if (series.points && !series.over && scene.run.start < scene.run.until) series.over = scene.run.until;
   scene.run.until = later;
   try {
-    return parse_scene(effective_toml(scene),
-                       file);  // as a scene with that end is read
-  } catch (const Error&) {     // which was valid with its own end
+    return parse_scene(effective_toml(scene), file);  // as a scene with that end is read
+  } catch (const Error&) {                            // which was valid with its own end
     throw Error({"--until", 0, ""}, "too late for this run, whose precision and spacing of samples stay", until,
                 "give an earlier time, or run the scene anew with this run.until");
   }

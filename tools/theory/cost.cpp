@@ -204,8 +204,7 @@ std::string end_line(const Scene& scene) {
   if (!stops_at_collapse(scene))
     return "to end sooner: run.collapse = \"stop\" without law.cutoff ends the run at the collapse; run.collapse = "
            "\"merge\" with a run.merge_speed and without law.cutoff, or a larger law.cutoff, takes fewer collisions "
-           "past "
-           "it\n";
+           "past it\n";
   const std::string unproved =
       scene.run.stop_gap     ? fmt::format("a gap is below run.stop_gap = {}", scene.run.stop_gap->text)
       : ends_unproved(scene) ? "a gap is below 2^-100 of one beside it at the start"
@@ -213,9 +212,8 @@ std::string end_line(const Scene& scene) {
                                "ends it sooner";
   return fmt::format("the run ends (status 3) where a collapse is proved or, without proof, {}; to go past it: "
                      "law.cutoff, or run.collapse = \"merge\" with a run.merge_speed\nin the collapse more collisions "
-                     "follow, how many is not "
-                     "known beforehand (of 200 particles some 1e7 at restitution 0.9, unless run.stop_gap ends it "
-                     "sooner)\n",
+                     "follow, how many is not known beforehand (of 200 particles some 1e7 at restitution 0.9, unless "
+                     "run.stop_gap ends it sooner)\n",
                      unproved);
 }
 

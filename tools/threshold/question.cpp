@@ -79,7 +79,7 @@ void Question::choose_outcome(const std::string& compare) {
              : stops_at_collapse(at_low_) ? Compare::collapse
                                           : Compare::collisions;
   if (!compare.empty()) {
-    const auto row = std::find_if(compared.begin(), compared.end(), [&](const auto& r) { return r.name == compare; });
+    const auto* const row = std::ranges::find(compared, compare, &CompareRow::name);
     if (row == compared.end()) {
       std::string names;
       for (const CompareRow& known : compared) names += (names.empty() ? "" : ", ") + std::string(known.name);
@@ -136,8 +136,7 @@ std::optional<std::string> Question::outcome(const RunOutcome& run) const {
   if (compare_ == Compare::merges) return fmt::format("{} merges", run.merges);
   if (at_low_.initial.type == InitialType::clusters)
     return run.collisions == 0 ? "no meeting" : run.merges > 0 ? "they stick" : "they pass";
-  const auto regime =
-      std::find_if(run.summary.begin(), run.summary.end(), [](const auto& number) { return number.first == "regime"; });
+  const auto regime = std::ranges::find(run.summary, "regime", &std::pair<std::string, double>::first);
   constexpr std::array regimes{"no pair", "apart", "they pass", "they stick"};
   return regimes.at(regime == run.summary.end() ? 0 : static_cast<std::size_t>(regime->second));
 }

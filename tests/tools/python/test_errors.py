@@ -24,17 +24,17 @@ class Files(small.Case):
 
     def test_what_is_no_result(self):
         os.makedirs("folder.h5", exist_ok=True)
-        for name, content in (("empty.h5", b""), ("foreign.h5", b"not HDF5 at all"), ("head.h5", b"\x89HDF\r\n\x1a\n")):
-            written(name, content)
-        with h5py.File("other.h5", "w") as file:
-            file["x"] = [1.0, 2.0]
-        for name, version in (("later.h5", 7), ("earlier.h5", 1)):
-            with h5py.File(name, "w") as file:
-                file.attrs["format_version"], file.attrs["scene"] = version, ""
-        for path, wrong in (("nothing.h5", "No such file"), ("folder.h5", "directory"), ("empty.h5", "empty file"),
-                            ("foreign.h5", "no HDF5"), ("head.h5", "cannot be read|can be read"),
-                            ("other.h5", "no result"), ("later.h5", "later version"),
-                            ("earlier.h5", "earlier version")):
+        for path, wrong in (("nothing.h5", "No such file"), ("folder.h5", "directory")):
+            self.refused(path, wrong)
+        for path, content, wrong in (("empty.h5", b"", "empty file"), ("foreign.h5", b"not HDF5 at all", "no HDF5"),
+                                     ("head.h5", b"\x89HDF\r\n\x1a\n", "cannot be read|can be read")):
+            self.refused(written(path, content), wrong)
+        for path, about, wrong in (("other.h5", {}, "no result"),
+                                   ("later.h5", {"format_version": 7, "scene": ""}, "later version"),
+                                   ("earlier.h5", {"format_version": 1, "scene": ""}, "earlier version")):
+            with h5py.File(path, "w") as file:
+                file["x"] = [1.0, 2.0]
+                file.attrs.update(about)
             self.refused(path, wrong)
         for call, made in ((cradle.plot.save, {"output": "foreign.png"}), (cradle.report, {})):
             self.refused("foreign.h5", "no HDF5", call, **made)
@@ -85,14 +85,13 @@ class Arguments(small.Case):
 
     def test_of_simulations(self):
         sim = cradle.Simulation("collapse3")
-        for scene in (5, None, b"fig2", ["fig2"]):
-            self.refused("scene", cradle.Simulation, scene)
-        for count in (-1, 2 ** 40, 1.5, "two"):
-            self.refused("threads:", cradle.Simulation, "fig2", threads=count)
-        for count in (-1, 1.5, "3", None):
-            self.refused("step: not a number of collisions", sim.step, count)
-        for until in ("soon", [1], float("inf")):
-            self.refused("not a time", sim.advance, until)
+        for wrong, call, *bad in (
+                ("scene", cradle.Simulation, 5, None, b"fig2", ["fig2"]),
+                ("threads:", lambda count: cradle.Simulation("fig2", threads=count), -1, 2 ** 40, 1.5, "two"),
+                ("step: not a number of collisions", sim.step, -1, 1.5, "3", None),
+                ("not a time", sim.advance, "soon", [1], float("inf"))):
+            for argument in bad:
+                self.refused(wrong, call, argument)
         for wrong, call, *arguments in (
                 ("set:", cradle.Simulation, "fig2", 5), ("every: not a function", sim.every, 1, 3),
                 ("every: too many calls", sim.every, 1e-300, print), ("every: no positive time", sim.every, 0, print),

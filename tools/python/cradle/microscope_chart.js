@@ -105,10 +105,9 @@ function microscopeChart(world, anchor, from, to, low, high, drift) {
     const comesIn = (line, side) => [line.from, line.to, ...line.points.map(i => [chart.tau[i], chart.xi[i]])]
       .some(([tau, xi]) => side > 0 ? xi - drift * tau < high : xi - drift * tau > low);
     const order = microscopeOrder(world, anchor.e), ring = around.length >= world.particles;
-    const outer = particle => chart.byParticle.get(particle);
-    const left = !ring && order.previous(around[0].particle) >= 0 && comesIn(outer(around[0].particle), -1);
-    const right = !ring && order.next(around[around.length - 1].particle) >= 0 &&
-                  comesIn(outer(around[around.length - 1].particle), 1);
+    const [lowest, highest] = [around[0].particle, around[around.length - 1].particle];
+    const left = !ring && order.previous(lowest) >= 0 && comesIn(chart.byParticle.get(lowest), -1);
+    const right = !ring && order.next(highest) >= 0 && comesIn(chart.byParticle.get(highest), 1);
     if (!left && !right) return { ...chart, around };
     if (left) more[0] = 2 * more[0] + around.length;
     if (right) more[1] = 2 * more[1] + around.length;
@@ -182,39 +181,32 @@ function microscopeFollow(world, anchor, around, from, to, first, last, most) {
   };
   const split = microscopeFirst(0, collisions.length, i => collisions[i] <= e);
   const middle = around.map(({ particle, xi: place, u }) =>
-    line(particle, microscopeSlotAfter(world, particle, e) - 1, 0, place, u));
-  const came = new Set();  // slots at which particles entered on the way forwards: known from the previous collision on
-  const merged = k => event[k] === MICROSCOPE.merge;
-  const known = new Map(middle.map(one => [one.particle, one]));
-  follow(known, split, collisions.length, 1, k => world.speed[k], (k, known) => {
-    if (!merged(k)) return;
-    const one = known.get(microscopeGone(world, k));
+    line(particle, microscopeSlotAfter(world, particle, e), 0, place, u));
+  const byParticle = new Map(middle.map(one => [one.particle, one]));
+  const ended = new Set();  // slots of the collisions after which particles are known until their next one
+  const goneIn = k => event[k] === MICROSCOPE.merge ? microscopeGone(world, k) : -1;
+  follow(new Map(byParticle), split - 1, -1, -1, k => world.after[k], () => {}, beginLine, (one, k) => {
+    ended.add(one.slot);
+    if (goneIn(k) === one.particle) one.to = [one.tau, one.xi];
+    else endLine(one);
+  });
+  // Then forwards from the anchor.
+  for (const one of lines) {
+    one.points.reverse();
+    one.speeds.reverse();
+  }
+  around.forEach(({ particle, xi: place, u }, i) =>
+    Object.assign(middle[i], { slot: microscopeSlotAfter(world, particle, e) - 1, tau: 0, xi: place, u }));
+  follow(new Map(byParticle), split, collisions.length, 1, k => world.speed[k], (k, known) => {
+    const one = known.get(goneIn(k));
+    if (!one) return;
     one.to = [one.tau, one.xi];
     known.delete(one.particle);
   }, endLine, one => {
     beginLine(one);
-    came.add(one.slot);
+    if (ended.has(one.slot - 1)) one.from = [one.tau, one.xi];
   });
-  // Then backwards from the anchor; the points of both passes are joined.
-  const ahead = middle.map(({ points, speeds }) => ({ points, speeds }));
-  around.forEach(({ particle, xi: place, u }, i) => Object.assign(middle[i], {
-    points: [], speeds: [], slot: microscopeSlotAfter(world, particle, e), tau: 0, xi: place, u }));
-  const earlier = lines.length;
-  follow(new Map(middle.map(one => [one.particle, one])), split - 1, -1, -1, k => world.after[k], () => {},
-         beginLine, (one, k) => {
-           const gone = merged(k) && microscopeGone(world, k) === one.particle;
-           if (gone || came.has(one.slot + 1)) one.to = [one.tau, one.xi];
-           else endLine(one);
-         });
-  lines.forEach((one, k) => {
-    if (k >= middle.length && k < earlier) return;
-    one.points.reverse();
-    one.speeds.reverse();
-    if (k >= middle.length) return;
-    one.points.push(...ahead[k].points);
-    one.speeds.push(...ahead[k].speeds);
-  });
-  return { collisions, tau, xi, lines, byParticle: new Map(middle.map(one => [one.particle, one])) };
+  return { collisions, tau, xi, lines, byParticle };
 }
 
 // The line of a chart through collision k of a particle, and the index of k in its points: [line, index].

@@ -10,9 +10,8 @@ function microscopeRelative(world, a, b, e) {
   const future = microscopeKnownFrom(world, a, b, e, 1);
   if (past && future) return past.path <= future.path ? past : future;
   if (past || future) return past || future;
-  const apart = microscopeAhead(world, microscopePlace(world, b, e) - microscopePlace(world, a, e));
-  return { gap: Math.max(0, apart), path: Infinity,
-           w: microscopeVelocity(world, a, e) - microscopeVelocity(world, b, e) };
+  const [left, right] = [a, b].map(particle => microscopeState(world, particle, e));
+  return { gap: Math.max(0, microscopeAhead(world, right.x - left.x)), path: Infinity, w: left.v - right.v };
 }
 
 // The distance to the right; on a ring, particles behind are also ahead.
@@ -71,17 +70,13 @@ function microscopeFlown(world, { gap, w, path }, at, kicks, e, sign) {
   return { gap, w, path };
 }
 
-// Position and velocity of a particle right after collision e, in the lab, with the accuracy of positions.
-function microscopePlace(world, particle, e) {
-  const slot = microscopeSlotAfter(world, particle, e) - 1;
-  if (slot < world.begin[particle]) return world.x0[particle] + world.v0[particle] * microscopeFlight(world, -1, e);
-  const last = world.list[slot];
-  const turned = world.ring && world.right[last] === particle ? world.turn[last] * world.ring : 0;
-  return world.x[last] + turned + world.velocity[slot] * microscopeFlight(world, last, e);
-}
-function microscopeVelocity(world, particle, e) {
-  const slot = microscopeSlotAfter(world, particle, e) - 1;
-  return slot < world.begin[particle] ? world.v0[particle] : world.velocity[slot];
+// Position and velocity of a particle in the lab, `since` after collision e, with the accuracy of positions: {x, v}.
+function microscopeState(world, particle, e, since = 0) {
+  const slot = microscopeSlotAfter(world, particle, e) - 1, none = slot < world.begin[particle];
+  const last = none ? -1 : world.list[slot], v = none ? world.v0[particle] : world.velocity[slot];
+  const turned = world.ring && !none && world.right[last] === particle ? world.turn[last] * world.ring : 0;
+  const x = none ? world.x0[particle] : world.x[last] + turned;
+  return { x: x + v * microscopeFlight(world, last, e) + v * since, v };
 }
 
 // The mass of a particle right after collision e.

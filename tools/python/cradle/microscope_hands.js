@@ -141,9 +141,7 @@ function microscopeGapAt(camera, [tau, xi]) {
     for (let particle = 0; particle < world.particles; ++particle) {
       const collided = world.begin[particle + 1] > world.begin[particle];
       if (!world.keepsOrder && collided && microscopeGoneAt(world, particle) < t) continue;
-      const place = microscopePlace(world, particle, collision) +
-        microscopeVelocity(world, particle, collision) * since;
-      consider(particle, place - x0 - (view.lab + view.V) * tau);
+      consider(particle, microscopeState(world, particle, collision, since).x - x0 - (view.lab + view.V) * tau);
     }
   }
   if (below < 0 || above < 0) return null;

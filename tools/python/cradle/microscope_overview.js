@@ -125,8 +125,8 @@ function microscopeVisible(world, view, row, height) {
     const collision = microscopeFirstAfter(world.time, t) - 1;
     const since = t - (collision < 0 ? world.start : world.time[collision]);
     // The number of particles left of the part shown at this row.
-    const above = edge => microscopeFirst(0, world.particles, k => row(
-      microscopePlace(world, k, collision) + microscopeVelocity(world, k, collision) * since, t) > edge);
+    const above = edge =>
+      microscopeFirst(0, world.particles, k => row(microscopeState(world, k, collision, since).x, t) > edge);
     lowest = Math.min(lowest, above(1.2 * height));
     highest = Math.max(highest, above(-0.2 * height));
   }

@@ -12,9 +12,8 @@ const MICROSCOPE = { byLaw: 0, elastic: 1, merge: 2, pass: 3 };
 
 // The typed array of {type, length, deflate}: byte planes, deflated, as base64.
 async function microscopeArray(packed) {
-  const text = atob(packed.deflate), deflated = new Uint8Array(text.length);
-  for (let i = 0; i < text.length; ++i) deflated[i] = text.charCodeAt(i);
-  const stream = new Blob([deflated]).stream().pipeThrough(new DecompressionStream("deflate"));
+  const deflated = await fetch(`data:application/octet-stream;base64,${packed.deflate}`);
+  const stream = deflated.body.pipeThrough(new DecompressionStream("deflate"));
   const planes = new Uint8Array(await new Response(stream).arrayBuffer());
   const Type = microscopeTypes[packed.type], size = Type.BYTES_PER_ELEMENT, n = packed.length;
   if (planes.length !== n * size) throw new Error(`microscope: an array is incomplete (${planes.length} bytes)`);

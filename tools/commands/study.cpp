@@ -13,20 +13,20 @@ namespace cradle::tools {
 Exit run_study_command(const RunningOptions& options, const std::function<StudyPlan()>& make_plan) {
   Interrupt interrupt;
   note_signals(interrupt);
-  const std::unique_ptr<Crew> crew = make_crew(interrupt);
+  const std::unique_ptr<Processes> processes = make_processes(interrupt);
   StudyPlan plan;
-  const Exit failed = crew->together([&] { plan = make_plan(); });
+  const Exit failed = processes->together([&] { plan = make_plan(); });
   if (failed != Exit::done) return failed;
-  if (crew->rank() == 0) notify(same_replicas_warning(plan.study, plan.replicas.count));
-  if (crew->rank() == 0 && !options.quiet) notify(plan.note);
+  if (processes->rank() == 0) notify(same_replicas_warning(plan.study, plan.replicas.count));
+  if (processes->rank() == 0 && !options.quiet) notify(plan.note);
   const std::string& output = plan.output;
   const auto started = std::chrono::steady_clock::now();
   const EnsembleOutcome end = run_study(
       plan.study,
       {.replicas = plan.replicas, .threads = options.threads, .progress = options.show(), .force = plan.force}, output,
-      *crew);
+      *processes);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
-  if (crew->rank() != 0) return end.status;
+  if (processes->rank() != 0) return end.status;
   if (!options.quiet) notify(end.account);
   notify(end.warning);
   if (end.status == Exit::interrupted || end.status == Exit::terminated) {

@@ -17,8 +17,8 @@ struct ThresholdArguments : CommonOptions, OutputOptions {
 };
 
 Exit run_threshold(const ThresholdArguments& options) {
-  const Question question(options.scene, options.all_overrides(), options.vary, options.outcome,
-                          static_cast<unsigned>(options.digits));
+  const ThresholdProblem question(options.scene, options.all_overrides(), options.vary, options.outcome,
+                                  static_cast<unsigned>(options.digits));
   const std::string output = options.output_or(options.read().name + "-threshold.h5");
   const FileClaim claim(output);
   Interrupt interrupt;

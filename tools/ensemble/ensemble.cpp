@@ -80,11 +80,13 @@ std::string failure_warning(const EnsembleStates& states, const std::string& fil
 }
 
 // Runs jobs on all threads of this process and puts the results into the store.
-void work(EnsembleStore& store, const EnsembleOptions& options, const Crew& crew, const NextJob& next,
+void work(EnsembleStore& store, const EnsembleOptions& options, const Processes& processes, const NextJob& next,
           const std::function<void()>& finished) {
   run_jobs(
-      Threads(options.threads > 0 ? options.threads : crew.threads()), next,
-      [&](const Job& job) { return run_replica(*store.states()[job.point], job.replica, options, crew.interrupt()); },
+      Threads(options.threads > 0 ? options.threads : processes.threads()), next,
+      [&](const Job& job) {
+        return run_replica(*store.states()[job.point], job.replica, options, processes.interrupt());
+      },
       [&](const Job& job, ReplicaRecord&& done) {
         store.add({job.point, std::move(done)});
         finished();
@@ -93,7 +95,7 @@ void work(EnsembleStore& store, const EnsembleOptions& options, const Crew& crew
         store.add({job.point, FailureRecord{job.replica, message}});
         finished();
       },
-      [&] { return crew.interrupt().signal() != 0; });
+      [&] { return processes.interrupt().signal() != 0; });
 }
 
 EnsembleOutcome outcome_of(const EnsembleStore& store, const std::string& file) {
@@ -106,17 +108,18 @@ EnsembleOutcome outcome_of(const EnsembleStore& store, const std::string& file) 
 }
 
 // The part of rank 0, which handles the files.
-EnsembleOutcome lead(EnsembleStore& store, const EnsembleOptions& options, const std::string& file, Crew& crew) {
+EnsembleOutcome lead(EnsembleStore& store, const EnsembleOptions& options, const std::string& file,
+                     Processes& processes) {
   const std::vector<JobRange> jobs = jobs_left(store, options.replicas);
   const std::uint64_t wanted = options.replicas.count * store.states().size(), fresh = JobQueue(jobs).left();
   if (fresh > 0) store.start_journal(0, options.replicas, options.journal_bytes);
   ReplicaProgress progress(options.progress, wanted - fresh, wanted);
-  const int signal = crew.share(
-      jobs, [&](const NextJob& next) { work(store, options, crew, next, [&] { progress.done(); }); },
+  const int signal = processes.share(
+      jobs, [&](const NextJob& next) { work(store, options, processes, next, [&] { progress.done(); }); },
       [&](std::uint64_t replicas) { progress.done(replicas); });
   EnsembleOutcome end;
   if (signal == 0) {
-    crew.gather([](const PutRecord&) {}, [&](std::string_view record) { store.apply(record); });
+    processes.gather([](const PutRecord&) {}, [&](std::string_view record) { store.apply(record); });
     if (fresh > 0 || !store.result_there())
       store.finish();
     else
@@ -130,11 +133,12 @@ EnsembleOutcome lead(EnsembleStore& store, const EnsembleOptions& options, const
   return end;
 }
 
-EnsembleOutcome follow(EnsembleStore& store, const EnsembleOptions& options, Crew& crew) {
-  store.start_journal(crew.rank(), options.replicas, options.journal_bytes);
-  const int signal = crew.share({}, [&](const NextJob& next) { work(store, options, crew, next, [] {}); }, {});
+EnsembleOutcome follow(EnsembleStore& store, const EnsembleOptions& options, Processes& processes) {
+  store.start_journal(processes.rank(), options.replicas, options.journal_bytes);
+  const int signal =
+      processes.share({}, [&](const NextJob& next) { work(store, options, processes, next, [] {}); }, {});
   if (signal == 0)
-    crew.gather([&](const PutRecord& put) { store.put_records(put); }, [](std::string_view) {});
+    processes.gather([&](const PutRecord& put) { store.put_records(put); }, [](std::string_view) {});
   else
     store.sync();
   return {};
@@ -142,29 +146,30 @@ EnsembleOutcome follow(EnsembleStore& store, const EnsembleOptions& options, Cre
 
 }  // namespace
 
-EnsembleOutcome run_study(const Study& study, const EnsembleOptions& options, const std::string& file, Crew& crew) {
+EnsembleOutcome run_study(const Study& study, const EnsembleOptions& options, const std::string& file,
+                          Processes& processes) {
   std::optional<EnsembleStore> store;
   std::string account;
-  const Exit failed = crew.together([&] {
+  const Exit failed = processes.together([&] {
     check_digits(study);
     store.emplace(study, file);
-    if (crew.rank() == 0) account = store->load(options.force);
+    if (processes.rank() == 0) account = store->load(options.force);
   });
   if (failed != Exit::done) {
     EnsembleOutcome none;
     none.status = failed;
     return none;
   }
-  crew.interrupt().heed();
-  if (crew.rank() != 0) return follow(*store, options, crew);
-  EnsembleOutcome end = lead(*store, options, file, crew);
+  processes.interrupt().heed();
+  if (processes.rank() != 0) return follow(*store, options, processes);
+  EnsembleOutcome end = lead(*store, options, file, processes);
   end.account = account;
   return end;
 }
 
 EnsembleOutcome run_ensemble(const Scene& scene, const EnsembleOptions& options, const std::string& file) {
   Interrupt interrupt;
-  Alone alone(interrupt);
+  OneProcess alone(interrupt);
   return run_study(ensemble_of(scene), options, file, alone);
 }
 

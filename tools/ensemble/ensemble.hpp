@@ -7,8 +7,8 @@
 #include <functional>
 #include <string>
 
-#include "cradle/tools/ensemble/crew.hpp"
 #include "cradle/tools/ensemble/ensemble_store.hpp"
+#include "cradle/tools/ensemble/processes.hpp"
 #include "cradle/tools/run/run.hpp"
 #include "cradle/tools/support/progress.hpp"
 
@@ -38,7 +38,8 @@ struct EnsembleOutcome {
 /// Runs the wanted replicas of every point that `file` and its journals do not have yet, and writes the file. Throws
 /// Error as EnsembleStore does. Under MPI all ranks call it with the same arguments; rank 0 gets the full outcome, the
 /// others only a status.
-EnsembleOutcome run_study(const Study& study, const EnsembleOptions& options, const std::string& file, Crew& crew);
+EnsembleOutcome run_study(const Study& study, const EnsembleOptions& options, const std::string& file,
+                          Processes& processes);
 
 /// The study of one scene, by this process alone.
 EnsembleOutcome run_ensemble(const Scene& scene, const EnsembleOptions& options, const std::string& file);

@@ -15,15 +15,15 @@ namespace {
 // The member that these pointers to members lead to, one after the other.
 template <auto... Path> constexpr auto member = +[](Scene& scene) -> auto& { return (scene.*....*Path); };
 
-constexpr When always{"", "", "", [](const Scene&) { return true; }};
+constexpr Condition always{"", "", "", [](const Scene&) { return true; }};
 
 template <LawType Of> constexpr auto of_law = +[](const Scene& s) { return s.law.type == Of; };
 template <InitialType Of> constexpr auto begins_as = +[](const Scene& s) { return s.initial.type == Of; };
 template <scene::CollapsePolicy P> constexpr auto at_collapse = +[](const Scene& s) { return s.run.collapse == P; };
 
 constexpr std::string_view other_law = "key of another law";
-constexpr When inelastic{other_law, "law.type", "law.type = \"inelastic\"", of_law<LawType::inelastic>};
-constexpr When wet{other_law, "law.type", "law.type = \"wet\"", of_law<LawType::wet>};
+constexpr Condition inelastic{other_law, "law.type", "law.type = \"inelastic\"", of_law<LawType::inelastic>};
+constexpr Condition wet{other_law, "law.type", "law.type = \"wet\"", of_law<LawType::wet>};
 // `law.type = "wet" or "sticky"`: the key, and the names of the rows in which this member has this value.
 template <class Row> std::string those_that(std::string_view key, const auto& rows, bool Row::*member, bool value) {
   std::vector<std::string> names;
@@ -35,17 +35,17 @@ template <class Row> std::string those_that(std::string_view key, const auto& ro
 }
 const std::string that_merge = those_that("law.type", law_rows, &LawRow::merges, true),
                   that_bounce = those_that("law.type", law_rows, &LawRow::merges, false);
-const When merging{other_law, "law.type", that_merge, [](const Scene& s) { return law_row(s).merges; }};
-constexpr When wet_shock{other_law, "law.type", "law.type = \"wet\" and equal rows", [](const Scene& s) {
-                           return s.law.type == LawType::wet && s.initial.type == InitialType::rows &&
-                                  !s.initial.general_rows();
-                         }};
+const Condition merging{other_law, "law.type", that_merge, [](const Scene& s) { return law_row(s).merges; }};
+constexpr Condition wet_shock{other_law, "law.type", "law.type = \"wet\" and equal rows", [](const Scene& s) {
+                                return s.law.type == LawType::wet && s.initial.type == InitialType::rows &&
+                                       !s.initial.general_rows();
+                              }};
 
 constexpr std::string_view other_state = "key of another initial state";
-constexpr When plain_rows{
+constexpr Condition plain_rows{
     other_state, "initial.left.particles", "initial.type = \"rows\" without [initial.left] and [initial.right]",
     [](const Scene& s) { return s.initial.type == InitialType::rows && !s.initial.general_rows(); }};
-constexpr When general_rows{
+constexpr Condition general_rows{
     other_state, "initial.type", "initial.type = \"rows\" with [initial.left] and [initial.right]",
     [](const Scene& s) { return s.initial.type == InitialType::rows && s.initial.general_rows(); }};
 template <bool InitialRow::*Member> std::string states_that_are() {
@@ -55,66 +55,70 @@ template <bool InitialRow::*Member> constexpr auto state_is = +[](const Scene& s
 const std::string states_in_order = states_that_are<&InitialRow::in_order>(),
                   states_on_line = states_that_are<&InitialRow::on_line>(),
                   thermal_states = states_that_are<&InitialRow::thermal>();
-const When in_order{other_state, "initial.type", states_in_order, state_is<&InitialRow::in_order>};
-constexpr When on_lattice{
+const Condition in_order{other_state, "initial.type", states_in_order, state_is<&InitialRow::in_order>};
+constexpr Condition on_lattice{
     other_state, "initial.positions", "initial.positions = \"lattice\" on rows, a ring, in a cold gas or a gas",
     [](const Scene& s) { return initial_row(s).in_order && s.initial.positions == Positions::lattice; }};
-const When on_line{other_state, "initial.type", states_on_line, state_is<&InitialRow::on_line>};
-const When thermal_gas{other_state, "initial.type", thermal_states, state_is<&InitialRow::thermal>};
-constexpr When gas{other_state, "initial.type", "initial.type = \"gas\"", begins_as<InitialType::gas>};
-constexpr When ring{other_state, "initial.type", "initial.type = \"ring\"", begins_as<InitialType::ring>};
-constexpr When list{other_state, "initial.type", "initial.type = \"list\"", begins_as<InitialType::list>};
-constexpr When clusters{other_state, "initial.type", "initial.type = \"clusters\"", begins_as<InitialType::clusters>};
-constexpr When cold{other_state, "initial.type", "initial.type = \"cold\"", begins_as<InitialType::cold>};
-constexpr When one_hot{other_state, "initial.hot", "initial.type = \"cold\" with initial.hot = 1",
-                       [](const Scene& s) { return s.initial.type == InitialType::cold && s.initial.hot == 1; }};
-constexpr When several_hot{other_state, "initial.hot", "initial.type = \"cold\" with several hot particles",
-                           [](const Scene& s) { return s.initial.type == InitialType::cold && s.initial.hot > 1; }};
+const Condition on_line{other_state, "initial.type", states_on_line, state_is<&InitialRow::on_line>};
+const Condition thermal_gas{other_state, "initial.type", thermal_states, state_is<&InitialRow::thermal>};
+constexpr Condition gas{other_state, "initial.type", "initial.type = \"gas\"", begins_as<InitialType::gas>};
+constexpr Condition ring{other_state, "initial.type", "initial.type = \"ring\"", begins_as<InitialType::ring>};
+constexpr Condition list{other_state, "initial.type", "initial.type = \"list\"", begins_as<InitialType::list>};
+constexpr Condition clusters{other_state, "initial.type", "initial.type = \"clusters\"",
+                             begins_as<InitialType::clusters>};
+constexpr Condition cold{other_state, "initial.type", "initial.type = \"cold\"", begins_as<InitialType::cold>};
+constexpr Condition one_hot{other_state, "initial.hot", "initial.type = \"cold\" with initial.hot = 1",
+                            [](const Scene& s) { return s.initial.type == InitialType::cold && s.initial.hot == 1; }};
+constexpr Condition several_hot{
+    other_state, "initial.hot", "initial.type = \"cold\" with several hot particles",
+    [](const Scene& s) { return s.initial.type == InitialType::cold && s.initial.hot > 1; }};
 
-const When may_have_walls{other_law, "law.type", that_bounce,
-                          [](const Scene& s) { return !law_row(s).merges && s.initial.type != InitialType::gas; }};
-const When may_fall{other_law, "law.type", that_bounce, [](const Scene& s) { return !law_row(s).merges; }};
+const Condition may_have_walls{other_law, "law.type", that_bounce,
+                               [](const Scene& s) { return !law_row(s).merges && s.initial.type != InitialType::gas; }};
+const Condition may_fall{other_law, "law.type", that_bounce, [](const Scene& s) { return !law_row(s).merges; }};
 
-constexpr When mpfr{"key of another precision", "run.precision", "run.precision = \"mpfr\"",
-                    [](const Scene& s) { return s.run.precision == Precision::mpfr; }};
+constexpr Condition mpfr{"key of another precision", "run.precision", "run.precision = \"mpfr\"",
+                         [](const Scene& s) { return s.run.precision == Precision::mpfr; }};
 
 constexpr std::string_view other_policy = "key of another collapse policy";
-constexpr When contact_time{other_policy, "run.collapse", "run.collapse = \"contact-time\"",
-                            at_collapse<scene::CollapsePolicy::contact_time>};
-constexpr When merge{other_policy, "run.collapse", "run.collapse = \"merge\"",
-                     at_collapse<scene::CollapsePolicy::merge>};
-constexpr When stop{other_policy, "run.collapse", "run.collapse = \"stop\"", at_collapse<scene::CollapsePolicy::stop>};
+constexpr Condition contact_time{other_policy, "run.collapse", "run.collapse = \"contact-time\"",
+                                 at_collapse<scene::CollapsePolicy::contact_time>};
+constexpr Condition merge{other_policy, "run.collapse", "run.collapse = \"merge\"",
+                          at_collapse<scene::CollapsePolicy::merge>};
+constexpr Condition stop{other_policy, "run.collapse", "run.collapse = \"stop\"",
+                         at_collapse<scene::CollapsePolicy::stop>};
 
 constexpr std::string_view other_series = "second way to say when the series is sampled";
-constexpr When not_every{other_series, "output.series.every", "a series without every",
-                         [](const Scene& s) { return !s.output.series.every; }};
-constexpr When by_points{other_series, "output.series.every", "a series without every and times",
-                         [](const Scene& s) { return !s.output.series.every && s.output.series.times.empty(); }};
+constexpr Condition not_every{other_series, "output.series.every", "a series without every",
+                              [](const Scene& s) { return !s.output.series.every; }};
+constexpr Condition by_points{other_series, "output.series.every", "a series without every and times",
+                              [](const Scene& s) { return !s.output.series.every && s.output.series.times.empty(); }};
 
-constexpr When averaged{"key of averages that are not requested", "output.averages.every", "output.averages.every",
-                        [](const Scene& s) { return s.output.averages.every.has_value(); }};
+constexpr Condition averaged{"key of averages that are not requested", "output.averages.every", "output.averages.every",
+                             [](const Scene& s) { return s.output.averages.every.has_value(); }};
 constexpr std::string_view no_histogram = "key of histograms that are not requested";
-constexpr When counted{no_histogram, "output.histograms", "output.histograms",
-                       [](const Scene& s) { return !s.output.histograms.empty(); }};
-constexpr When states_counted{no_histogram, "output.histograms", "\"gap\" or \"cluster\" in output.histograms",
-                              [](const Scene& s) { return s.output.has_histogram_of_states(); }};
-constexpr When clusters_counted{no_histogram, "output.histograms", "\"cluster\" in output.histograms",
-                                [](const Scene& s) { return s.output.has_histogram("cluster"); }};
+constexpr Condition counted{no_histogram, "output.histograms", "output.histograms",
+                            [](const Scene& s) { return !s.output.histograms.empty(); }};
+constexpr Condition states_counted{no_histogram, "output.histograms", "\"gap\" or \"cluster\" in output.histograms",
+                                   [](const Scene& s) { return s.output.has_histogram_of_states(); }};
+constexpr Condition clusters_counted{no_histogram, "output.histograms", "\"cluster\" in output.histograms",
+                                     [](const Scene& s) { return s.output.has_histogram("cluster"); }};
 
-constexpr When correlated{"key of correlations that are not requested", "output.correlations.every",
-                          "output.correlations.every",
-                          [](const Scene& s) { return s.output.correlations.every.has_value(); }};
+constexpr Condition correlated{"key of correlations that are not requested", "output.correlations.every",
+                               "output.correlations.every",
+                               [](const Scene& s) { return s.output.correlations.every.has_value(); }};
 constexpr std::string_view no_structure = "key of structure factors that are not requested";
-constexpr When structured{no_structure, "output.structure.every", "output.structure.times or output.structure.every",
-                          [](const Scene& s) { return s.output.structure.any(); }};
-constexpr When structure_averaged{no_structure, "output.structure.every", "output.structure.every",
-                                  [](const Scene& s) { return s.output.structure.every.has_value(); }};
+constexpr Condition structured{no_structure, "output.structure.every",
+                               "output.structure.times or output.structure.every",
+                               [](const Scene& s) { return s.output.structure.any(); }};
+constexpr Condition structure_averaged{no_structure, "output.structure.every", "output.structure.every",
+                                       [](const Scene& s) { return s.output.structure.every.has_value(); }};
 constexpr std::string_view no_pairs = "key of pair distributions that are not requested";
-constexpr When paired{no_pairs, "output.pair_distribution.every",
-                      "output.pair_distribution.times or output.pair_distribution.every",
-                      [](const Scene& s) { return s.output.pair_distribution.any(); }};
-constexpr When pairs_averaged{no_pairs, "output.pair_distribution.every", "output.pair_distribution.every",
-                              [](const Scene& s) { return s.output.pair_distribution.every.has_value(); }};
+constexpr Condition paired{no_pairs, "output.pair_distribution.every",
+                           "output.pair_distribution.times or output.pair_distribution.every",
+                           [](const Scene& s) { return s.output.pair_distribution.any(); }};
+constexpr Condition pairs_averaged{no_pairs, "output.pair_distribution.every", "output.pair_distribution.every",
+                                   [](const Scene& s) { return s.output.pair_distribution.every.has_value(); }};
 
 std::string start_of_run(const Scene& s) { return s.run.start.text; }
 std::string end_of_run(const Scene& s) { return s.run.until.text; }
@@ -171,18 +175,18 @@ std::string_view of_side(std::string_view text, std::string_view side) {
 // The keys of one of the two walls. `of_gas`: the row of its position where it ends a gas.
 template <WallAt WallPair::*Wall> std::vector<Field> wall_fields(std::string_view side, const Field& of_gas) {
   const auto text = [&](std::string_view with_side) { return of_side(with_side, side); };
-  static const When there{"key of a wall that is not there", text("walls.{}.position"), text("a {} wall"),
-                          [](const Scene& s) { return (s.walls.*Wall).position.has_value(); }};
-  static const When reflects{"key of a wall that reflects", text("walls.{}.temperature"),
-                             text("a {} wall without temperature"),
-                             [](const Scene& s) { return (s.walls.*Wall).position && !(s.walls.*Wall).temperature; }};
-  static const When shaken{"key of a wall that is shaken", text("walls.{}.motion"), text("a shaken {} wall"),
-                           [](const Scene& s) { return (s.walls.*Wall).position && (s.walls.*Wall).shaken(); }};
-  static const When holds{"key of a wall on which particles can rest", "gravity.acceleration",
-                          text("a {} wall without temperature, shaken or with gravity"), [](const Scene& s) {
-                            const WallAt& wall = s.walls.*Wall;
-                            return wall.position && !wall.temperature && (wall.shaken() || s.gravity.acts());
-                          }};
+  static const Condition there{"key of a wall that is not there", text("walls.{}.position"), text("a {} wall"),
+                               [](const Scene& s) { return (s.walls.*Wall).position.has_value(); }};
+  static const Condition reflects{
+      "key of a wall that reflects", text("walls.{}.temperature"), text("a {} wall without temperature"),
+      [](const Scene& s) { return (s.walls.*Wall).position && !(s.walls.*Wall).temperature; }};
+  static const Condition shaken{"key of a wall that is shaken", text("walls.{}.motion"), text("a shaken {} wall"),
+                                [](const Scene& s) { return (s.walls.*Wall).position && (s.walls.*Wall).shaken(); }};
+  static const Condition holds{"key of a wall on which particles can rest", "gravity.acceleration",
+                               text("a {} wall without temperature, shaken or with gravity"), [](const Scene& s) {
+                                 const WallAt& wall = s.walls.*Wall;
+                                 return wall.position && !wall.temperature && (wall.shaken() || s.gravity.acts());
+                               }};
   return {
       {text("walls.{}.position"), walls_of<Wall, &WallAt::position>, "l", "", any, &may_have_walls,
        text("position of a wall at the {} end of the line, at run.start; without it, none. A wall is a particle of "
@@ -455,7 +459,7 @@ const Field fields_after_walls[] = {
 // Of the initial states whose row says how many particles there can be.
 template <std::size_t... K> std::vector<Field> number_of_particles(std::index_sequence<K...>) {
   static const std::string texts[] = {fmt::format("initial.type = \"{}\"", initial_rows[K].name)...};
-  static const When states[] = {{other_state, "initial.type", texts[K], begins_as<initial_rows[K].type>}...};
+  static const Condition states[] = {{other_state, "initial.type", texts[K], begins_as<initial_rows[K].type>}...};
   std::vector<Field> all;
   for (const auto& [row, state] : {std::pair(initial_rows[K], &states[K])...})
     if (!row.particles.empty())

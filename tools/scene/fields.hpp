@@ -26,7 +26,7 @@ using Storage =
                  Member<Spacing>, Member<scene::Meeting>>;
 
 /// The scenes to which a key applies.
-struct When {
+struct Condition {
   std::string_view otherwise;   // what is wrong with the key in other scenes
   std::string_view decided_by;  // the key that decides whether this one applies
   std::string_view text;        // `law.type = "wet"`; empty: every scene
@@ -39,7 +39,7 @@ struct Field {
   std::string_view unit;      // in m, l (lengths), t (times); "" for pure numbers and texts
   std::string_view fallback;  // TOML; "required"; "" for none; or a description of what `computed` gives
   std::string_view range;     // "[0, 1]", "(0, inf)", "[2, 1e15] even", bounds may be keys; or "a | b | c"
-  const When* when;
+  const Condition* when;
   std::string_view doc;
   std::string (*computed)(const Scene&) = nullptr;
   bool recorded = true;  // in the effective scene; false for keys that cannot change a result

@@ -64,7 +64,7 @@ void refuse_unknown_key(std::string_view key, const Value& value) {
 }
 
 // Why a key does not apply: names the deciding key and its value.
-std::string decided_by(const When& when, const Scene& scene) {
+std::string decided_by(const Condition& when, const Scene& scene) {
   const Field* field = find_field(when.decided_by, scene);
   while ((!field->when->holds(scene) || !value_text(*field, scene)) && !field->when->decided_by.empty())
     field = find_field(field->when->decided_by, scene);

@@ -26,7 +26,7 @@ Error interrupted(const Interrupt& interrupt) {
 
 class Search {
  public:
-  Search(const Question& question, const std::string& file, const ThresholdOptions& options)
+  Search(const ThresholdProblem& question, const std::string& file, const ThresholdOptions& options)
       : question_(question), options_(options), part_(file + ".part"), line_(options.progress),
         threads_(thread_count(options.threads)) {
     const JournalHeader header{kind, question.identity(),
@@ -165,7 +165,7 @@ class Search {
             fmt::format("proved: the collisions ({}) are those of the exact system", proof.certificate.collisions)};
   }
 
-  const Question& question_;
+  const ThresholdProblem& question_;
   const ThresholdOptions& options_;
   std::string part_;
   ProgressLine line_;
@@ -178,11 +178,11 @@ class Search {
 
 }  // namespace
 
-Threshold find_threshold(const Question& question, const std::string& file, const ThresholdOptions& options) {
+Threshold find_threshold(const ThresholdProblem& question, const std::string& file, const ThresholdOptions& options) {
   return Search(question, file, options).find();
 }
 
-std::string threshold_text(const Question& question, const Threshold& found) {
+std::string threshold_text(const ThresholdProblem& question, const Threshold& found) {
   std::string text = fmt::format("{}\n", question.what().text);
   for (const ThresholdEnd* end : {&found.low, &found.high})
     text += fmt::format("  {} = {}: {}\n    {}\n", question.key(), end->run.value, end->run.outcome, end->how);
@@ -190,7 +190,7 @@ std::string threshold_text(const Question& question, const Threshold& found) {
                             found.proved() ? "proved" : "seen", found.runs.size());
 }
 
-Result threshold_result(const Question& question, const Threshold& found, const std::string& command) {
+Result threshold_result(const ThresholdProblem& question, const Threshold& found, const std::string& command) {
   const auto scene = question.scene_at(Decimal(found.low.run.value), false).value();
   Result result;
   result.attributes = provenance(scene, precision_name(scene.run), "threshold of " + question.key());

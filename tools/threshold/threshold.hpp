@@ -40,13 +40,13 @@ static_assert(rows_in_order(compared));
 
 inline constexpr std::string_view no_collapse = "no collapse";
 
-/// What `cradle threshold` asks: a scene, a key of it that varies, and what is compared (question.cpp).
-class Question {
+/// What `cradle threshold` asks: a scene, a key of it that varies, and what is compared (threshold_problem.cpp).
+class ThresholdProblem {
  public:
   /// `vary` is KEY=LOW:HIGH or KEY[I]=LOW:HIGH; `compare` a name of the table, empty: what suits the scene. Throws
   /// Error.
-  Question(std::string scene, std::vector<std::string> overrides, const std::string& vary, const std::string& compare,
-           unsigned digits);
+  ThresholdProblem(std::string scene, std::vector<std::string> overrides, const std::string& vary,
+                   const std::string& compare, unsigned digits);
 
   const std::string& key() const { return key_; }  // with its index
   const Decimal& low() const { return low_; }
@@ -116,10 +116,10 @@ struct ThresholdOptions {
 
 /// Continues what `file` and its journal hold of this question. Throws Error: Exit::bad_input if the outcome is the
 /// same at both ends, Exit::lost if a run has no outcome or a proof contradicts one, and when it is interrupted.
-Threshold find_threshold(const Question& question, const std::string& file, const ThresholdOptions& options);
+Threshold find_threshold(const ThresholdProblem& question, const std::string& file, const ThresholdOptions& options);
 
-std::string threshold_text(const Question& question, const Threshold& found);
+std::string threshold_text(const ThresholdProblem& question, const Threshold& found);
 /// `command` is what follows `cradle` to make it.
-Result threshold_result(const Question& question, const Threshold& found, const std::string& command);
+Result threshold_result(const ThresholdProblem& question, const Threshold& found, const std::string& command);
 
 }  // namespace cradle::tools

@@ -14,7 +14,7 @@ int main(int, char** arguments) {
   using namespace cradle::tools;
   try {
     Interrupt interrupt;
-    const auto crew = make_crew(interrupt);
+    const auto processes = make_processes(interrupt);
     EnsembleOptions options;
     options.replicas = {0, std::stoull(arguments[2])};
     options.runner = [](const Scene& replica, const RunOptions& how) {
@@ -27,7 +27,7 @@ int main(int, char** arguments) {
       }
       return run_scene(changed, how);
     };
-    const EnsembleOutcome end = run_study(ensemble_of(read_scene(arguments[1])), options, arguments[3], *crew);
+    const EnsembleOutcome end = run_study(ensemble_of(read_scene(arguments[1])), options, arguments[3], *processes);
     fmt::print("{}\n", end.outcome);
     return static_cast<int>(end.status);
   } catch (const std::exception& error) {

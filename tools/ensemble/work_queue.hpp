@@ -11,18 +11,18 @@
 #include <optional>
 #include <thread>
 
-#include "cradle/tools/ensemble/crew.hpp"
+#include "cradle/tools/ensemble/processes.hpp"
 
 namespace cradle::tools {
 
-class Workshop {
+class WorkQueue {
  public:
-  /// Begins work(next) at once. `put` adds jobs until the workshop is closed. An interrupt ends the work early.
-  Workshop(const std::function<void(const NextJob&)>& work, const Interrupt& interrupt)
+  /// Begins work(next) at once. `put` adds jobs until it is closed. An interrupt ends the work early.
+  WorkQueue(const std::function<void(const NextJob&)>& work, const Interrupt& interrupt)
       : interrupt_(interrupt), thread_([this, work] { run(work); }) {}
-  ~Workshop() { thread_.join(); }
-  Workshop(const Workshop&) = delete;
-  Workshop& operator=(const Workshop&) = delete;
+  ~WorkQueue() { thread_.join(); }
+  WorkQueue(const WorkQueue&) = delete;
+  WorkQueue& operator=(const WorkQueue&) = delete;
 
   void put(const JobRange& piece) {
     const std::scoped_lock lock(mutex_);

@@ -1,5 +1,5 @@
-// The processes that share the replicas of ensembles: this process alone, or the ranks of an MPI job (mpi_crew.cpp).
-// Rank 0 knows the work, distributes it and collects the results.
+// The processes that share the replicas of ensembles: this process alone, or the ranks of an MPI job
+// (mpi_processes.cpp). Rank 0 knows the work, distributes it and collects the results.
 #pragma once
 
 #include <cstdint>
@@ -32,11 +32,11 @@ using NextJob = std::function<std::optional<Job>()>;
 /// The number of processors that this process may use: launchers bind their processes to some of the machine's.
 unsigned processors();
 
-class Crew {
+class Processes {
  public:
-  /// Work stops early if the interrupt says so; the interrupt must outlive the crew.
-  explicit Crew(Interrupt& interrupt) : interrupt_(interrupt) {}
-  virtual ~Crew() = default;
+  /// Work stops early if the interrupt says so; the interrupt must outlive the processes.
+  explicit Processes(Interrupt& interrupt) : interrupt_(interrupt) {}
+  virtual ~Processes() = default;
   Interrupt& interrupt() const { return interrupt_; }
   virtual unsigned rank() const = 0;
   /// The default number of threads of each rank.
@@ -74,9 +74,9 @@ class JobQueue {
   std::size_t at_ = 0;
 };
 
-class Alone : public Crew {
+class OneProcess : public Processes {
  public:
-  using Crew::Crew;
+  using Processes::Processes;
   unsigned rank() const override { return 0; }
   unsigned threads() const override { return processors(); }
   Exit together(const std::function<void()>& step) override;
@@ -88,9 +88,9 @@ class Alone : public Crew {
 /// The ranks of an MPI job if a launcher (mpirun, srun) started this process, else this process alone: MPI_Init without
 /// a launcher costs 0.3 s. Throws Error if a launcher started several processes that do not see each other. Call it
 /// once in a program.
-std::unique_ptr<Crew> make_crew(Interrupt& interrupt);
+std::unique_ptr<Processes> make_processes(Interrupt& interrupt);
 #ifdef CRADLE_WITH_MPI
-std::unique_ptr<Crew> make_mpi_crew(int processes_launched, Interrupt& interrupt);
+std::unique_ptr<Processes> make_mpi_processes(int processes_launched, Interrupt& interrupt);
 #endif
 
 }  // namespace cradle::tools

@@ -1,4 +1,4 @@
-#include "cradle/tools/ensemble/crew.hpp"
+#include "cradle/tools/ensemble/processes.hpp"
 
 #include <sched.h>
 
@@ -55,13 +55,13 @@ std::uint64_t JobQueue::left() const {
   return sum;
 }
 
-Exit Alone::together(const std::function<void()>& step) {
+Exit OneProcess::together(const std::function<void()>& step) {
   step();
   return Exit::done;
 }
 
-int Alone::share(const std::vector<JobRange>& jobs, const std::function<void(const NextJob&)>& work,
-                 const std::function<void(std::uint64_t)>&) {
+int OneProcess::share(const std::vector<JobRange>& jobs, const std::function<void(const NextJob&)>& work,
+                      const std::function<void(std::uint64_t)>&) {
   JobQueue queue(jobs);
   std::mutex mutex;
   work([&]() -> std::optional<Job> {
@@ -74,15 +74,15 @@ int Alone::share(const std::vector<JobRange>& jobs, const std::function<void(con
   return interrupt().signal();
 }
 
-std::unique_ptr<Crew> make_crew(Interrupt& interrupt) {
-  if (!launched()) return std::make_unique<Alone>(interrupt);
+std::unique_ptr<Processes> make_processes(Interrupt& interrupt) {
+  if (!launched()) return std::make_unique<OneProcess>(interrupt);
 #ifdef CRADLE_WITH_MPI
-  return make_mpi_crew(processes(), interrupt);
+  return make_mpi_processes(processes(), interrupt);
 #else
   if (processes() > 1)
     throw Error({}, "a program without MPI cannot share work between processes",
                 std::to_string(processes()) + " launched", "build it where MPI is found, or run it without a launcher");
-  return std::make_unique<Alone>(interrupt);
+  return std::make_unique<OneProcess>(interrupt);
 #endif
 }
 

@@ -31,8 +31,8 @@ const Field& field_of(std::string_view key, const Scene& scene) {
 
 }  // namespace
 
-Question::Question(std::string scene, std::vector<std::string> overrides, const std::string& vary,
-                   const std::string& compare, unsigned digits)
+ThresholdProblem::ThresholdProblem(std::string scene, std::vector<std::string> overrides, const std::string& vary,
+                                   const std::string& compare, unsigned digits)
     : scene_(std::move(scene)), vary_(vary), overrides_(std::move(overrides)), digits_(digits) {
   const auto equals = std::min(vary.find('='), vary.size()), colon = std::min(vary.find(':', equals), vary.size());
   key_ = vary.substr(0, equals);
@@ -52,7 +52,7 @@ Question::Question(std::string scene, std::vector<std::string> overrides, const 
   wide_ = !whole_ && more;
 }
 
-void Question::choose_key(const Scene& given) {
+void ThresholdProblem::choose_key(const Scene& given) {
   const auto bracket = key_.find('[');
   const Field& field = field_of(key_.substr(0, bracket), given);
   const std::string_view type = type_name(field);
@@ -72,7 +72,7 @@ void Question::choose_key(const Scene& given) {
   item_ = static_cast<std::size_t>(*index);
 }
 
-void Question::choose_outcome(const std::string& compare) {
+void ThresholdProblem::choose_outcome(const std::string& compare) {
   const bool pair = at_low_.initial.type == InitialType::clusters || at_low_.output.scenario;
   compare_ = pair                         ? Compare::pair
              : particles_merge(at_low_)   ? Compare::merges
@@ -100,7 +100,7 @@ void Question::choose_outcome(const std::string& compare) {
                                           "compare merges");
 }
 
-std::string Question::assignment(const Decimal& value) const {
+std::string ThresholdProblem::assignment(const Decimal& value) const {
   if (items_.empty()) return key_ + "=" + value.text;
   std::string list = key_.substr(0, key_.find('[')) + "=[";
   for (std::size_t k = 0; k < items_.size(); ++k)
@@ -108,7 +108,7 @@ std::string Question::assignment(const Decimal& value) const {
   return list + "]";
 }
 
-std::optional<Scene> Question::scene_at(const Decimal& value, bool wide) const {
+std::optional<Scene> ThresholdProblem::scene_at(const Decimal& value, bool wide) const {
   std::vector<std::string> all = overrides_;
   all.push_back(assignment(value));
   if (wide) {
@@ -127,7 +127,7 @@ std::optional<Scene> Question::scene_at(const Decimal& value, bool wide) const {
   return scene;
 }
 
-std::optional<std::string> Question::outcome(const RunOutcome& run) const {
+std::optional<std::string> ThresholdProblem::outcome(const RunOutcome& run) const {
   const bool collapsed = run.end == RunEnd::collapsed || (compare_ == Compare::gap && run.end == RunEnd::small_gap);
   if (!collapsed && run.end != RunEnd::reached) return {};
   if (compare_ == Compare::collapse || compare_ == Compare::gap || collapsed)
@@ -141,13 +141,13 @@ std::optional<std::string> Question::outcome(const RunOutcome& run) const {
   return regimes.at(regime == run.summary.end() ? 0 : static_cast<std::size_t>(regime->second));
 }
 
-std::uint64_t Question::identity() const {
+std::uint64_t ThresholdProblem::identity() const {
   std::string text = fmt::format("{}\n{}\n{}\n{} {}\n", version, key_, what().name, wide_, wide_digits());
   for (const Decimal& end : {low_, high_}) text += end.text + '\n' + effective_toml(scene_at(end, false).value());
   return crc64(text);
 }
 
-std::string Question::command(const std::string& scene_file) const {
+std::string ThresholdProblem::command(const std::string& scene_file) const {
   std::string text =
       fmt::format("threshold {} --vary '{}' --digits {} --outcome {}", scene_file, vary_, digits_, what().name);
   for (const std::string& assignment : overrides_) text += fmt::format(" --set '{}'", assignment);

@@ -1,7 +1,7 @@
 // Rank 0 gives aligned pieces of the remaining replicas to ranks that request them, large pieces first and smaller ones
 // towards the end; the threads of a rank share its pieces. Only the main thread calls MPI, and it does nothing else;
 // other threads do the work. If a rank dies the launcher ends the job; the next job finds the journals of all ranks.
-#include "cradle/tools/ensemble/crew.hpp"
+#include "cradle/tools/ensemble/processes.hpp"
 
 #include <fmt/format.h>
 #include <mpi.h>
@@ -15,7 +15,7 @@
 #include <string>
 #include <thread>
 
-#include "cradle/tools/ensemble/workshop.hpp"
+#include "cradle/tools/ensemble/work_queue.hpp"
 
 namespace cradle::tools {
 
@@ -78,10 +78,10 @@ int status_of(const std::exception_ptr& error, std::string& message) {
   return static_cast<int>(Exit::bad_input);
 }
 
-class MpiCrew : public Crew {
+class MpiProcesses : public Processes {
  public:
-  MpiCrew(int processes_launched, Interrupt& interrupt);
-  ~MpiCrew() override { MPI_Finalize(); }
+  MpiProcesses(int processes_launched, Interrupt& interrupt);
+  ~MpiProcesses() override { MPI_Finalize(); }
 
   unsigned rank() const override { return static_cast<unsigned>(rank_); }
   unsigned threads() const override { return threads_; }
@@ -91,15 +91,15 @@ class MpiCrew : public Crew {
   void gather(const std::function<void(const PutRecord&)>& put, const PutRecord& take) override;
 
  private:
-  void lead(Workshop& shop, JobQueue all, const std::function<void(std::uint64_t)>& others_took) const;
-  void follow(Workshop& shop) const;
+  void lead(WorkQueue& queue, JobQueue all, const std::function<void(std::uint64_t)>& others_took) const;
+  void follow(WorkQueue& queue) const;
   [[noreturn]] void abandon(const std::exception_ptr& error) const;
 
   int rank_ = 0, size_ = 1;
   unsigned threads_ = 0;
 };
 
-MpiCrew::MpiCrew(int processes_launched, Interrupt& interrupt) : Crew(interrupt) {
+MpiProcesses::MpiProcesses(int processes_launched, Interrupt& interrupt) : Processes(interrupt) {
   int given = 0;
   MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &given);
   MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
@@ -119,7 +119,7 @@ MpiCrew::MpiCrew(int processes_launched, Interrupt& interrupt) : Crew(interrupt)
   threads_ = bound ? processors() : std::max(1U, processors() / static_cast<unsigned>(ranks_here));
 }
 
-Exit MpiCrew::together(const std::function<void()>& step) {
+Exit MpiProcesses::together(const std::function<void()>& step) {
   std::exception_ptr error;
   try {
     step();
@@ -139,7 +139,7 @@ Exit MpiCrew::together(const std::function<void()>& step) {
 }
 
 // Ends the job from one rank. The launcher ends the other ranks; their replicas are in their journals.
-void MpiCrew::abandon(const std::exception_ptr& error) const {
+void MpiProcesses::abandon(const std::exception_ptr& error) const {
   std::string message;
   const int status = status_of(error, message);
   fmt::print(stderr, "cradle: rank {}: {}\n", rank_, message);
@@ -148,14 +148,14 @@ void MpiCrew::abandon(const std::exception_ptr& error) const {
   std::abort();
 }
 
-int MpiCrew::share(const std::vector<JobRange>& jobs, const std::function<void(const NextJob&)>& work,
-                   const std::function<void(std::uint64_t)>& others_took) {
+int MpiProcesses::share(const std::vector<JobRange>& jobs, const std::function<void(const NextJob&)>& work,
+                        const std::function<void(std::uint64_t)>& others_took) {
   {
-    Workshop shop(work, interrupt());
+    WorkQueue queue(work, interrupt());
     if (rank_ == 0)
-      lead(shop, JobQueue(jobs), others_took);
+      lead(queue, JobQueue(jobs), others_took);
     else
-      follow(shop);
+      follow(queue);
   }
   // Some ranks may have finished before a signal came: all return what rank 0 returns, which waits for all.
   int signal = interrupt().signal();
@@ -169,7 +169,7 @@ int MpiCrew::share(const std::vector<JobRange>& jobs, const std::function<void(c
   return signal;
 }
 
-void MpiCrew::lead(Workshop& shop, JobQueue all, const std::function<void(std::uint64_t)>& others_took) const {
+void MpiProcesses::lead(WorkQueue& queue, JobQueue all, const std::function<void(std::uint64_t)>& others_took) const {
   // A piece is a third of an even share of the rest: few messages at first, and no long wait for the last rank.
   const auto piece = [&] {
     return all.take(std::max<std::uint64_t>(1, all.left() / (3 * static_cast<std::uint64_t>(size_))));
@@ -179,11 +179,11 @@ void MpiCrew::lead(Workshop& shop, JobQueue all, const std::function<void(std::u
   bool stopped = false;
   const auto stop = [this] { return Reply{Order::stop, 0, 0, 0, static_cast<std::uint64_t>(interrupt().signal())}; };
   for (bool closed = false;;) {
-    const bool idle = shop.idle(!closed);
-    if (idle && shop.error()) abandon(shop.error());
-    if (!closed && shop.empty()) {
+    const bool idle = queue.idle(!closed);
+    if (idle && queue.error()) abandon(queue.error());
+    if (!closed && queue.empty()) {
       const auto own = piece();
-      own ? shop.put(*own) : shop.close();
+      own ? queue.put(*own) : queue.close();
       closed = !own;
     }
     if (interrupt().signal() != 0 && !std::exchange(stopped, true))
@@ -207,17 +207,17 @@ void MpiCrew::lead(Workshop& shop, JobQueue all, const std::function<void(std::u
   }
 }
 
-void MpiCrew::follow(Workshop& shop) const {
+void MpiProcesses::follow(WorkQueue& queue) const {
   bool requested = false, closed = false, notified = false;
   std::uint64_t reported = 0;
   auto last = std::chrono::steady_clock::now();
   for (bool idle = false; !idle;) {
-    idle = shop.idle(!requested && !closed);
-    if (idle && shop.error()) abandon(shop.error());
-    Report report{shop.taken() - reported};
+    idle = queue.idle(!requested && !closed);
+    if (idle && queue.error()) abandon(queue.error());
+    Report report{queue.taken() - reported};
     if (idle)
       report.wish = Wish::leave;
-    else if (!requested && !closed && shop.empty())
+    else if (!requested && !closed && queue.empty())
       report.wish = Wish::piece, requested = true;
     if (interrupt().signal() != 0 && !std::exchange(notified, true))
       report.signal = static_cast<std::uint64_t>(interrupt().signal());
@@ -230,12 +230,12 @@ void MpiCrew::follow(Workshop& shop) const {
     while (!idle && sender(0, from_leader) == 0) {
       const auto reply = receive<Reply>(0, from_leader);
       if (reply.order == Order::work) {
-        shop.put({reply.point, {reply.first, reply.count}});
+        queue.put({reply.point, {reply.first, reply.count}});
         requested = false;
         continue;
       }
       if (reply.order == Order::stop) interrupt().note(static_cast<int>(reply.signal));
-      shop.close();
+      queue.close();
       closed = true;
     }
   }
@@ -243,7 +243,7 @@ void MpiCrew::follow(Workshop& shop) const {
     wait([] { return sender(0, from_leader) == 0; });
 }
 
-void MpiCrew::gather(const std::function<void(const PutRecord&)>& put, const PutRecord& take) {
+void MpiProcesses::gather(const std::function<void(const PutRecord&)>& put, const PutRecord& take) {
   constexpr std::uint64_t end = ~std::uint64_t{0}, piece = std::uint64_t{1} << 30;  // MPI counts in int
   if (rank_ != 0) {
     put([&](std::string_view record) {
@@ -271,8 +271,8 @@ void MpiCrew::gather(const std::function<void(const PutRecord&)>& put, const Put
 
 }  // namespace
 
-std::unique_ptr<Crew> make_mpi_crew(int processes_launched, Interrupt& interrupt) {
-  return std::make_unique<MpiCrew>(processes_launched, interrupt);
+std::unique_ptr<Processes> make_mpi_processes(int processes_launched, Interrupt& interrupt) {
+  return std::make_unique<MpiProcesses>(processes_launched, interrupt);
 }
 
 }  // namespace cradle::tools

@@ -47,14 +47,4 @@ TEST_F(RunThreads, NeverChangeTheEvents) {
   }
 }
 
-TEST_F(RunThreads, AreWhatCheckPrintsBeforehand) {
-  const auto printed = [&](const std::string& scene) { return shell("cradle check --threads 2 " + scene).out; };
-  EXPECT_TRUE(has(printed("fig2"), "threads: 2, about 1.8 times as fast as one once all particles are active\n"));
-  EXPECT_TRUE(has(printed("fig11"), "threads: one does the work (particles that merge)\n"));
-  EXPECT_TRUE(has(printed("ring.toml"), "threads: 2, about 1.8 times"));
-  EXPECT_TRUE(has(printed("fig2 --set initial.particles=200"), "(few particles)"));
-  EXPECT_TRUE(has(printed("fig2 --set run.coordinates=absolute"), "(absolute coordinates)"));
-  EXPECT_TRUE(has(printed("collapse3"), "(a collapse to be found)"));
-}
-
 }  // namespace cradle::tests::run_threads_test

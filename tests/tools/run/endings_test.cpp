@@ -1,5 +1,5 @@
-// How runs end. Every run ends, or advances in time; what it advises at its end helps when it is followed. A ball that
-// falls on an inelastic floor collapses at a known time, in every type and in all coordinates.
+// How runs end. Every run ends, or advances in time. A ball that falls on an inelastic floor collapses at a known time,
+// in every type and in all coordinates. (What a run advises at its end is followed in outputs.txt.)
 //
 // Random scenes with floors, shaken walls, rows, lists and rings, with every collapse policy: CRADLE_ENDINGS=500 makes
 // it more.

@@ -2,9 +2,9 @@
 // event-driven N-particle program (identical in double, binary128 and 100 digits), the three-particle collapse against
 // its closed form, and the bits of result files.
 
-#include <algorithm>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>

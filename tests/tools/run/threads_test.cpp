@@ -1,6 +1,6 @@
 // `cradle run --threads`. Proves: result files have the same bytes for any number of threads, if a run is cut into
-// segments, in double and in wider types; events are those of the plain loop; and `check` says beforehand whether
-// threads will be used.
+// segments, in double and in wider types; and events are those of the plain loop. (Whether threads will be used is said
+// beforehand: outputs.txt.)
 
 #include <string>
 

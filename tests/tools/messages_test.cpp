@@ -206,6 +206,7 @@ TEST_P(Answers, AreThoseOfTheTable) {
 constexpr auto name_of = [](const auto& inputs) { return inputs.param.name; };
 INSTANTIATE_TEST_SUITE_P(Input, Answers, testing::ValuesIn(Table("messages.txt").groups), name_of);
 INSTANTIATE_TEST_SUITE_P(Output, Answers, testing::ValuesIn(Table("outputs.txt").groups), name_of);
+INSTANTIATE_TEST_SUITE_P(OutputOfRuns, Answers, testing::ValuesIn(Table("run/outputs.txt").groups), name_of);
 
 // The texts between quotes in a source of the program, those that follow each other as one.
 std::string texts(const std::string& source) {

@@ -65,23 +65,4 @@ TEST_P(Pictures, AreMadeWithoutDisplayAndTwiceTheSame) {
 INSTANTIATE_TEST_SUITE_P(Kinds, Pictures, testing::ValuesIn(kinds()),
                          [](const auto& parameter) { return parameter.param.name; });
 
-class Plots : public ProgramTest {};
-
-TEST_F(Plots, AreMadeWhereNobodyReadsTheirNames) {
-  shell("cradle run fig5 --quiet -o it.h5", 0);
-  // The reader has closed its end before anything is written.
-  const Printed plot =
-      shell("mkfifo gone; (cat gone; cradle plot it.h5; echo $? >status) | (exec <&-; echo >gone); cat status");
-  EXPECT_EQ(plot.out, "0\n");
-  EXPECT_EQ(plot.err, "");
-  EXPECT_TRUE(exists("it.png"));
-}
-
-TEST_F(Plots, LeaveNoFilesBehind) {
-  shell("cradle run fig5 --quiet -o it.h5 && mkdir temporary", 0);
-  shell("TMPDIR=$PWD/temporary cradle plot it.h5", 0);
-  EXPECT_EQ(shell("ls temporary").out, "");
-  shell("TMPDIR=$PWD/nowhere cradle plot it.h5", 4);
-}
-
 }  // namespace cradle::tests::plots_test

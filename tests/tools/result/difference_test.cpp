@@ -1,6 +1,6 @@
 // `cradle diff`. Proves: two results are the same only if everything in them is; each kind of difference is reported
-// where it is, with its size; a tolerance accepts smaller differences and counts them; and the command's statuses.
-#include <algorithm>
+// where it is, with its size; and a tolerance accepts smaller differences and counts them. (What the command prints,
+// and its statuses, are in tests/tools/run/outputs.txt.)
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -117,59 +117,6 @@ TEST(Difference, InUnitsInTheLastPlace) {
   EXPECT_EQ(tools::ulps_between(std::nextafter(0., -1.), std::nextafter(0., 1.)), 2U);
   EXPECT_EQ(tools::ulps_between(-1, 1), 2 * tools::ulps_between(0, 1));
   EXPECT_EQ(tools::ulps_between(std::numeric_limits<double>::max(), inf), 1U);
-}
-
-class Diff : public ProgramTest {
- protected:
-  Printed run(const std::string& file, const std::string& more = "") const {
-    return shell(
-        "cradle run fig2 --quiet --set initial.particles=100 --set run.until=60 --set output.series.points=5 " + more +
-        " -o " + file);
-  }
-};
-
-TEST_F(Diff, StatusIsThatOfAComparison) {
-  ASSERT_EQ(run("a.h5").status, 0);
-  ASSERT_EQ(run("b.h5", "--threads 2").status, 0);
-  ASSERT_EQ(run("c.h5", "--set run.precision=double-double").status, 0);
-  const Printed same = shell("cradle diff a.h5 b.h5"), other = shell("cradle diff a.h5 c.h5");
-  EXPECT_EQ(same.status, 0) << same.out;
-  EXPECT_TRUE(begins(same.out, "no difference: "));
-  EXPECT_EQ(other.status, 1);
-  EXPECT_TRUE(has(other.out, "\nscene: run.precision = \"double\" against \"double-double\"\n")) << other.out;
-  EXPECT_TRUE(has(other.out, "\n  @scene: line "));
-  EXPECT_TRUE(has(other.out, "\n  series/energy: first in row "));
-  const Printed loose = shell("cradle diff a.h5 c.h5 --rtol 1e-9");
-  EXPECT_EQ(loose.status, 1) << "precision is in the scene";
-  EXPECT_FALSE(has(loose.out, "series/energy:"));
-  EXPECT_TRUE(has(loose.out, "within --rtol 1e-9"));
-}
-
-// Runs of different scenes: a summary of a line for each part, without ULPs; and every place, when wanted.
-TEST_F(Diff, OfDifferentRunsIsAPage) {
-  ASSERT_EQ(run("a.h5", "--set output.snapshots=[20,40,60]").status, 0);
-  ASSERT_EQ(run("b.h5", "--set output.snapshots=[20,40,60] --set initial.seed=2 --set law.cutoff=").status, 0);
-  const Printed found = shell("cradle diff a.h5 b.h5", 1);
-  for (const auto* line : {"\nscene: law.cutoff = 1e-5 against 0\n", "\nscene: initial.seed = 1 against 2\n",
-                           "\nsnapshots: ", "numbers by up to "})
-    EXPECT_TRUE(has(found.out, line)) << found.out;
-  EXPECT_FALSE(has(found.out, "ULPs")) << found.out;
-  const auto lines_of = [](const Printed& printed) { return std::count(printed.out.begin(), printed.out.end(), '\n'); };
-  EXPECT_LT(lines_of(found), 12) << found.out;
-  const std::string count = found.out.substr(0, found.out.find(' '));
-  EXPECT_TRUE(begins(found.out, count + " differences (--all lists them): ")) << found.out;
-  const Printed all = shell("cradle diff a.h5 b.h5 --all", 1);
-  EXPECT_TRUE(has(all.out, "\n  snapshots/0000/gap: ")) << all.out;
-  EXPECT_EQ(std::to_string(lines_of(all) - lines_of(found)), count) << all.out;
-}
-
-TEST_F(Diff, RefusesWhatItCannotCompare) {
-  ASSERT_EQ(run("a.h5").status, 0);
-  shell("cradle diff a.h5 missing.h5", 4);
-  for (const std::string rtol : {"-1", "nan", "1e-9x", "inf"}) {
-    const Printed refused = shell("cradle diff a.h5 a.h5 --rtol=" + rtol, 2);
-    EXPECT_TRUE(has(refused.err, "--rtol: not a tolerance (found " + rtol + ")"));
-  }
 }
 
 }  // namespace cradle::tests::difference_test

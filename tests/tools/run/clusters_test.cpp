@@ -182,13 +182,4 @@ TEST_F(RunClusters, TwoRunsGiveTheSameBytesAndSamplesChangeNothing) {
   EXPECT_EQ(numbers(often, "series/heaviest", "x").back(), numbers(once, "series/heaviest", "x").back());
 }
 
-TEST_F(RunClusters, IsCheckedExportedAndPlottedLikeOthers) {
-  EXPECT_TRUE(has(shell("cradle check fig10").out, "initial.meeting = \"pass\""));
-  shell("cradle run fig9b --quiet --force --set run.until=1000", 0);
-  shell("cradle info fig9b.h5", 0);
-  shell("cradle export fig9b.h5 --to csv", 0);
-  EXPECT_EQ(contents(folder / "csv/meetings.csv").substr(0, 7), "time,x,");
-  shell("cradle plot fig9b.h5", 0);
-}
-
 }  // namespace cradle::tests::clusters_test

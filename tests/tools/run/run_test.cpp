@@ -2,9 +2,9 @@
 // event-driven N-particle program (identical in double, binary128 and 100 digits), the three-particle collapse against
 // its closed form, and the bits of result files.
 
-#include <algorithm>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -67,60 +67,6 @@ TEST_F(Run, CollapseStopsOnceItsTimeIsSettled) {
   EXPECT_TRUE(has(run.out, "t_c = ")) << "the report is printed under --quiet too";
 }
 
-TEST_F(Run, AbsoluteCoordinatesSayWhereTheyStopResolvingACollapse) {
-  const Printed run = shell("cradle run collapse3 --set run.coordinates=absolute", 5);
-  EXPECT_TRUE(has(run.err, "gaps below 1e6 units in the last place of x"));
-  EXPECT_TRUE(has(run.err, "first at t = 1.7142"));
-  EXPECT_TRUE(has(run.err, "resolution exhausted"));
-}
-
-TEST_F(Run, PlainLawWithoutAPolicyAgainstCollapseEndsInsteadOfHanging) {
-  const Printed run = shell("cradle run collapse3 --set run.stop_gap= --set run.collapse=cutoff", 5);
-  EXPECT_TRUE(has(run.err, "resolution exhausted"));
-}
-
-TEST_F(Run, EveryPrecisionReportsTheCollapseTimeToItsLastDigits) {
-  // 12/7 = 1.(714285): as many digits as the type has, its last one or two left to rounding.
-  const std::string exact =
-      "1.714285714285714285714285714285714285714285714285714285714285714285714285714285714285714285";
-  const std::vector<std::pair<std::string, std::size_t>> digits{{"double", 15},
-                                                                {"'long double'", 18},
-                                                                {"double-double", 30},
-#ifdef CRADLE_WITH_FLOAT128
-                                                                {"float128", 32},
-#endif
-                                                                {"cpp_bin_float", 90},
-                                                                {"mpfr --set run.digits=20", 19},
-                                                                {"mpfr --set run.digits=80", 79}};
-  for (const auto& [precision, right] : digits) {
-    const Printed run = shell("cradle run collapse3 --force --set run.precision=" + precision, 3);
-    EXPECT_TRUE(has(run.out, "t_c = " + exact.substr(0, right - 1))) << precision;
-  }
-}
-
-TEST_F(Run, CollapseIsFollowedBelowTheRangeOfDouble) {
-  const Printed run =
-      shell("cradle run collapse3 --set run.precision=mpfr --set run.digits=40 --set run.stop_gap=1e-2000");
-  EXPECT_EQ(run.status, 3) << run.err;
-  EXPECT_TRUE(has(run.out, "e-2001 beside it"));
-}
-
-TEST_F(Run, PoliciesAgainstCollapseReachTheEnd) {
-  for (const auto* policy : {"contact-time --set run.contact_time=1e-6", "merge --set run.merge_speed=1e-3"})
-    shell(std::string("cradle run collapse3 --force --set run.stop_gap= --set run.collapse=") + policy, 0);
-}
-
-TEST_F(Run, TrustSaysThatDoubleInGapsIsRightToUnderflow) {
-  const Printed trust = shell("cradle trust collapse3 --both", 0);
-  const auto line = [&](const std::string& begin) {
-    const auto at = trust.out.find(begin);
-    return at == std::string::npos ? std::string() : trust.out.substr(at, trust.out.find('\n', at) - at);
-  };
-  EXPECT_TRUE(has(line("double            gaps"), "(end)")) << trust.out;
-  EXPECT_FALSE(has(line("double            absolute"), "(end)")) << trust.out;
-  shell("cradle plot collapse3-trust.h5", 0);
-}
-
 TEST_F(Run, TrustedTimesOfAChaoticSceneRiseWithDigits) {
   write("wet.toml", "law = { type = 'wet', loss = 0.01 }\nrun.until = 19500\noutput.series.every = 500\n"
                     "initial = { type = 'rows', particles = 20000, speed = 0.5, perturbation = 0.0005 }\n");
@@ -147,29 +93,6 @@ TEST_F(Run, EnergiesThatOverflow) {
   EXPECT_EQ(numbers(result, "series", "energy"), std::vector<double>(3, std::numeric_limits<double>::infinity()));
   const auto exact = numbers<std::string>(result, "exact/series", "energy");
   EXPECT_TRUE(exact[0].starts_with("3.00") && exact[0].ends_with("e320")) << exact[0];
-
-  const Printed ensemble = shell("cradle ensemble a.toml --replicas 2 -o e.h5 --set run.precision=mpfr", 5);
-  EXPECT_TRUE(has(ensemble.err, "replica 0 failed: a number beyond the range of a double"));
-}
-
-TEST_F(Run, PositionsThatOverflowEndIt) {
-  write("a.toml", "law = { type = 'inelastic', restitution = 0.9 }\nrun.until = 1e200\n"
-                  "initial = { type = 'list', x = [0, 1], v = [0, 1e150] }\noutput.series.points = 3\n"
-                  "output.snapshots = [1e200]\n");
-  const Printed run = shell("cradle run a.toml -o a.h5", 5);
-  EXPECT_TRUE(
-      has(run.err, "a: a position beyond the range of double (found at t = 1e+200): give an earlier run.until"));
-}
-
-// The time of a checkpoint is that of the run's precision, which has fewer digits than a double here.
-TEST_F(Run, OfFewDigitsIsGoneOnWith) {
-  ASSERT_EQ(
-      shell("cradle run fig2 --quiet --set run.precision=mpfr --set run.digits=10 --set initial.particles=20 --set "
-            "run.until=10.1 --set output.snapshots=[] --set output.profiles.times=[] -o a.h5")
-          .status,
-      0);
-  shell("cradle resume a.h5 --until 20", 0);
-  shell("cradle resume a.h5 --until 3_0", 2);
 }
 
 constexpr const char* small_shock = "cradle run fig2 --quiet --set initial.particles=600 --set run.until=400 "

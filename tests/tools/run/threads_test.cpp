@@ -1,6 +1,6 @@
 // `cradle run --threads`. Proves: result files have the same bytes for any number of threads, if a run is cut into
-// segments, in double and in wider types; events are those of the plain loop; and `check` says beforehand whether
-// threads will be used.
+// segments, in double and in wider types; and events are those of the plain loop. (Whether threads will be used is said
+// beforehand: outputs.txt.)
 
 #include <string>
 
@@ -45,16 +45,6 @@ TEST_F(RunThreads, NeverChangeTheEvents) {
     for (std::size_t k = 0; k < wanted.size(); ++k)
       EXPECT_TRUE(found.at(k).values == wanted[k].values) << wanted[k].name;
   }
-}
-
-TEST_F(RunThreads, AreWhatCheckPrintsBeforehand) {
-  const auto printed = [&](const std::string& scene) { return shell("cradle check --threads 2 " + scene).out; };
-  EXPECT_TRUE(has(printed("fig2"), "threads: 2, about 1.8 times as fast as one once all particles are active\n"));
-  EXPECT_TRUE(has(printed("fig11"), "threads: one does the work (particles that merge)\n"));
-  EXPECT_TRUE(has(printed("ring.toml"), "threads: 2, about 1.8 times"));
-  EXPECT_TRUE(has(printed("fig2 --set initial.particles=200"), "(few particles)"));
-  EXPECT_TRUE(has(printed("fig2 --set run.coordinates=absolute"), "(absolute coordinates)"));
-  EXPECT_TRUE(has(printed("collapse3"), "(a collapse to be found)"));
 }
 
 }  // namespace cradle::tests::run_threads_test

@@ -71,19 +71,6 @@ TEST(ExpectedCollisions, OfACoolingGasEndWhereItClusters) {
 }
 
 // With what a run ends at a collapse of many particles.
-// On a floor that loses energy a rest speed is what ends the collisions with it.
-TEST(ExpectedCollisions, OfAColumnAskForARestSpeed) {
-  const std::string column = "law = { type = 'inelastic', restitution = 1, cutoff = 1e-3 }\nrun.until = 100\n"
-                             "gravity.acceleration = -1\nwalls.left = { position = 0, restitution = 0.9@ }\n"
-                             "initial = { type = 'list', x = [1, 2], v = [0, 0] }";
-  const auto expected = [&](const std::string& rest_speed) {
-    std::string text = column;
-    const Scene scene = scene_of(text.replace(text.find('@'), 1, rest_speed));
-    return expected_lines(scene, expected_cost(scene));
-  };
-  EXPECT_TRUE(has(expected(""), "may have no limit: with walls.left.rest_speed they come to rest there instead"));
-  EXPECT_FALSE(has(expected(", rest_speed = 1e-2"), "rest_speed"));
-}
 TEST(ExpectedCollisions, SayWithWhatACollapseEnds) {
   const std::string rows =
       "law = { type = 'inelastic', restitution = 0.9 }\nrun.until = 1e4\n"

@@ -19,6 +19,12 @@ std::vector<Prediction> table_of(const std::string& scene, const std::vector<std
   return predictions(read_scene(scene, overrides));
 }
 
+// Of Fig. 6 without the times at which its own run, which is longer, writes tables.
+std::vector<Prediction> table_of_fig6(std::vector<std::string> overrides) {
+  for (const char* key : {"output.snapshots=", "output.profiles.times=", "output.masses="}) overrides.push_back(key);
+  return table_of("fig6", overrides);
+}
+
 std::optional<double> number(const std::vector<Prediction>& table, const std::string& quantity,
                              const std::string& form) {
   for (const auto& p : table)
@@ -55,9 +61,7 @@ TEST(WetPredictions, AreThoseOfTheValidationTable) {
 
 TEST(WetPredictions, EnergyIsThatOfTheRun) {
   // NB: energies at t = 2000 and 4999, E(0) = 6250; sampled where the curve has its points
-  const std::vector<std::string> until{"run.until=4999", "output.series.points=2",
-                                       "output.snapshots=", "output.profiles.times=", "output.masses="};
-  const auto table = table_of("fig6", until);
+  const auto table = table_of_fig6({"run.until=4999", "output.series.points=2"});
   for (const auto* form : {"continuous", "discrete"}) {
     const auto energy = curve(table, "energy", form);
     ASSERT_FALSE(energy.empty()) << form;
@@ -88,13 +92,7 @@ TEST(WetPredictions, CurvesOfTheFrontMeetItsTurnover) {
 
 TEST(WetPredictions, GoAsFarAsTheyApply) {
   // particles that stick at once (E > m u0^2), before they are slowed to rest (> m u0^2/4), or never (0)
-  const std::vector<std::string> short_run{"run.until=50",
-                                           "output.snapshots=", "output.profiles.times=", "output.masses="};
-  const auto with_loss = [&](const std::string& loss) {
-    auto overrides = short_run;
-    overrides.push_back("law.loss=" + loss);
-    return table_of("fig6", overrides);
-  };
+  const auto with_loss = [&](const std::string& loss) { return table_of_fig6({"run.until=50", "law.loss=" + loss}); };
   const auto stuck = with_loss("0.3");
   EXPECT_FALSE(number(stuck, "zone_width", "continuous"));
   EXPECT_FALSE(number(stuck, "turnover_time", "continuous"));
@@ -106,15 +104,12 @@ TEST(WetPredictions, GoAsFarAsTheyApply) {
   EXPECT_EQ(curve(free, "front_position", "discrete").back().value, 24.5);
   EXPECT_FALSE(number(free, "zone_width", "continuous"));
   // forms that go collision by collision are left out where that would take long
-  const auto tiny = table_of(
-      "fig6", {"law.loss=1e-12", "run.until=1e12", "output.snapshots=", "output.profiles.times=", "output.masses="});
+  const auto tiny = table_of_fig6({"law.loss=1e-12", "run.until=1e12"});
   EXPECT_TRUE(number(tiny, "turnover_time", "continuous"));
   EXPECT_FALSE(number(tiny, "turnover_time", "discrete"));
   EXPECT_TRUE(curve(tiny, "energy", "discrete").empty());
   // a run of no length
-  for (const auto& p :
-       table_of("fig6", {"run.until=0", "output.snapshots=", "output.profiles.times=", "output.masses="}))
-    EXPECT_TRUE(std::isfinite(p.value)) << p.quantity;
+  for (const auto& p : table_of_fig6({"run.until=0"})) EXPECT_TRUE(std::isfinite(p.value)) << p.quantity;
 }
 
 TEST(WetPredictions, OfClustersAreThoseOfTheZone) {

@@ -77,7 +77,14 @@ class Table {
 
  private:
   static bool is_command(const std::string& line) { return line.starts_with("$ "); }
-  bool next(std::istream& file, std::string& text) { return ++line_, static_cast<bool>(std::getline(file, text)); }
+  // A line that ends in a backslash continues in the next one.
+  bool next(std::istream& file, std::string& text) {
+    ++line_;
+    if (!std::getline(file, text)) return false;
+    for (std::string more; text.ends_with(" \\") && std::getline(file, more); ++line_)
+      text.replace(text.size() - 1, 1, more.substr(more.find_first_not_of(' ')));
+    return true;
+  }
   Lines until_blank(std::istream& file) {
     Lines lines;
     for (std::string text; next(file, text) && !text.empty();) lines.push_back(text);

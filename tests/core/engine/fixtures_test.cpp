@@ -21,7 +21,9 @@ struct Row {
   double energy;
 };
 
-template <class Run> void expect_rows(Run run, const Scene<double>& particles, const std::vector<Row>& rows) {
+template <class Run>
+void expect_rows(const char* chain, Run run, const Scene<double>& particles, const std::vector<Row>& rows) {
+  SCOPED_TRACE(chain);
   for (const Row& row : rows) {
     ASSERT_EQ(run.advance(row.time), Status::reached);
     EXPECT_EQ(run.counts().collisions, row.collisions) << "t = " << row.time;
@@ -34,14 +36,8 @@ template <class Run> void expect_rows(Run run, const Scene<double>& particles, c
 }
 
 void expect_in_both_chains(const Scene<double>& particles, const Inelastic<double>& law, const std::vector<Row>& rows) {
-  {
-    SCOPED_TRACE("gaps");
-    expect_rows(gap_run(particles, law), particles, rows);
-  }
-  {
-    SCOPED_TRACE("positions");
-    expect_rows(position_run(particles, law), particles, rows);
-  }
+  expect_rows("gaps", gap_run(particles, law), particles, rows);
+  expect_rows("positions", position_run(particles, law), particles, rows);
 }
 
 TEST(Fixtures, MixedVelocities) {
@@ -67,7 +63,7 @@ TEST(Fixtures, ShockOfThePapersFigure2) {
 
 void expect_wet_rows(ParticleIndex count, double loss, const std::vector<Row>& rows) {
   const auto particles = rshock<double>(count);
-  expect_rows(Simulation(Wet<double>{loss}, ClusterChain<double>{particles, 0.0}), particles, rows);
+  expect_rows("clusters", Simulation(Wet<double>{loss}, ClusterChain<double>{particles, 0.0}), particles, rows);
 }
 
 TEST(Fixtures, WetShockUntilTheRowsAreUsedUpAndAfter) {

@@ -116,28 +116,4 @@ TEST(Properties, EqualMassesOneByOneHaveTheBitsOfIdenticalParticles) {
   }
 }
 
-TEST(Properties, FewParticlesOrNoneInMotion) {
-  const Inelastic<double> law(0.5, 0);
-  const auto collisions = [&](const Scene<double>& particles) {
-    auto gaps = gap_run(particles, law);
-    auto positions = position_run(particles, law);
-    EXPECT_EQ(gaps.advance(1e9), Status::reached);
-    EXPECT_EQ(positions.advance(1e9), Status::reached);
-    EXPECT_EQ(gaps.counts().collisions, positions.counts().collisions);
-    const auto a = configuration_at(gaps, 1e9), b = configuration_at(positions, 1e9);
-    for (std::size_t j = 0; j < a.x.size(); ++j) {
-      EXPECT_NEAR(a.x[j], b.x[j], 4 * u * std::abs(b.x[j]));
-      EXPECT_NEAR(a.v[j], b.v[j], 4 * u);
-    }
-    return gaps.counts().collisions;
-  };
-  EXPECT_EQ(collisions(list<double>({3}, {1})), 0U) << "one particle";
-  EXPECT_EQ(collisions(list<double>({0, 1}, {-1, 1})), 0U) << "parting";
-  EXPECT_EQ(collisions(list<double>({0, 1}, {1, 1})), 0U) << "side by side";
-  EXPECT_EQ(collisions(list<double>({0, 1, 2}, {0, 0, 0})), 0U) << "at rest";
-  EXPECT_EQ(collisions(list<double>({0, 1}, {1, -1})), 1U);
-  EXPECT_EQ(collisions(list<double>({0, 1, 10}, {1, 0, 0})), 3U)
-      << "(1 + eps)/2 reaches the third particle, then again";
-}
-
 }  // namespace cradle::test::properties_test

@@ -1,7 +1,8 @@
 // What must not change a bit of a run. Proves, for every kind of chain, law and scene below: a run has the same bits
 // with output once, ten or ten thousand times, or at the very time of each collision; with and without an observer;
 // with any number of index bits in the queue's keys; if it streams its rows, holds them completely, or has the same
-// particles as a list; and if it is saved anywhere and continued by another run.
+// particles as a list; and if it is saved anywhere and continued by another run. And what holds in each of them: the
+// guards are silent (the ledger is the direct sum, momentum, order and closure are kept), and no order is lost.
 #include <gtest/gtest.h>
 
 #include <vector>
@@ -103,6 +104,9 @@ template <class Property> void for_each_of_other_masses_and_places(const Propert
 
 template <class Property> void for_each_gas(const Property& property) {
   for_each_of_rows(property);
+  for (const auto& scene : {unequal_rows<double>({}, three_masses), cold_gas(8, HotPlace::middle)})
+    property(gas<Clusters>("clusters of masses that repeat", scene, Sticky<double>(), 10, 200,
+                           {.collisions = 6, .merges = 6}));
   property(gas<Gaps>("mixed velocities", rmix<double>(32), Dry(0.9375), 10, 100));
   property(gas<Gaps>("rows in epochs", uniform_rows(1200), Dry(0.95, 1e-2), 4, 40));
   property(gas<Gaps>("a ring", gaussian_ring(20, 20), Dry(0.9, 1e-4), 4, 40));
@@ -186,11 +190,13 @@ template <class Run> void expect_same_at_collisions(Run observed, Run often, Run
   EXPECT_EQ(often.counts().close_calls, once.counts().close_calls);
 }
 
-TEST(SameBits, AtAnyCadenceAndWithAnObserver) {
+TEST(SameBits, AtAnyCadenceAndWithAnObserverAndAccountsHold) {
   const auto expect_same = [](const auto& gas) {
     SCOPED_TRACE(gas.name);
     auto once = gas.run();
     expect_same_at_collisions(gas.run(), gas.run(), once, gas.end);
+    EXPECT_TRUE(guards_hold(once, *gas.particles, gas.end));
+    EXPECT_EQ(once.account().order_lost, 0U);
     EXPECT_GE(once.counts().collisions, gas.least.collisions);
     EXPECT_GE(once.counts().merges, gas.least.merges);
     EXPECT_GE(once.counts().close_calls, gas.least.close_calls);

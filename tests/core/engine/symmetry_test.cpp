@@ -123,13 +123,11 @@ TEST(WetSymmetry, Mirror) {
 TEST(Symmetry, MirroredPositionsDifferByTheClosureErrorAtMost) {
   for (const Case& scene : dry_cases()) {
     const Result original = run(scene), mirror = run(mirrored(scene.state), scene.law, scene.end);
-    const auto &x = original.c.x, mirrored_x = times(reversed(mirror.c.x), -1),
-               mirrored_v = times(reversed(mirror.c.v), -1);
-    const double rounding = 8 * epsilon * (std::abs(x.front()) + std::abs(x.back()) + scene.end);
-    for (std::size_t j = 0; j < x.size(); ++j) {
-      ASSERT_NEAR(mirrored_x[j], x[j], std::abs(original.c.closure_gap.value()) + rounding) << j;
-      ASSERT_NEAR(mirrored_v[j], original.c.v[j], std::abs(original.c.closure_speed.value()) + 8 * epsilon) << j;
-    }
+    const Configuration<double>& c = original.c;
+    const double rounding = 8 * epsilon * (std::abs(c.x.front()) + std::abs(c.x.back()) + scene.end);
+    EXPECT_LE(largest_difference(times(reversed(mirror.c.x), -1), c.x), std::abs(c.closure_gap.value()) + rounding);
+    EXPECT_LE(largest_difference(times(reversed(mirror.c.v), -1), c.v),
+              std::abs(c.closure_speed.value()) + 8 * epsilon);
   }
 }
 

@@ -76,6 +76,9 @@ void expect_exact(const Moments& found, const std::vector<ReplicaIndex>& replica
 TEST(Statistics, AreThoseOfExactArithmeticWithinRounding) {
   for (const std::uint64_t n : {2U, 3U, 7U, 64U, 1000U})
     expect_exact(statistics_of(first_indices(n)), first_indices(n));
+  std::vector<ReplicaIndex> range;
+  for (ReplicaIndex k = 123; k < 456; ++k) range.push_back(k);
+  expect_exact(statistics_of(range), range);
 }
 
 TEST(Statistics, OfOneReplicaAreItsValues) {
@@ -125,12 +128,6 @@ TEST(Statistics, OfAnySplitMergedInAnyOrderAreThoseOfTheWhole) {
     EXPECT_EQ(merged.nodes(), whole.nodes()) << trial;
     EXPECT_EQ(merged.size(), end - begin);
   }
-}
-
-TEST(Statistics, OfARangeAreExactToo) {
-  std::vector<ReplicaIndex> replicas;
-  for (ReplicaIndex k = 123; k < 456; ++k) replicas.push_back(k);
-  expect_exact(statistics_of(replicas), replicas);
 }
 
 TEST(Statistics, SkipAndCountMissingEntriesOneByOne) {

@@ -1,12 +1,11 @@
-// Guards are silent in every correct run, also after very many collisions, and each guard reports an error of its own
-// quantity that is far too small to be seen in a result.
+// Guards are silent in correct runs (of other kinds: engine/same_bits_test.cpp), and each guard reports an error of its
+// own quantity that is far too small to be seen in a result.
 #include <gtest/gtest.h>
 
 #include <functional>
 #include <limits>
 #include <optional>
 
-#include "cradle/core/chains/cluster_chain.hpp"
 #include "cradle/core/engine/sticky_gas.hpp"
 #include "cradle/core/initial/walled.hpp"
 #include "cradle/core/observe/configuration_statistics.hpp"
@@ -23,27 +22,14 @@ GuardCheck<double> inspect(const Run& run, const Particles<double>& particles, c
                  run.last_collision_time(), 0., true);
 }
 
-template <class Run> void expect_silent(Run&& run, const Particles<double>& particles) {
-  for (const double time : {1., 10., 100., 500.}) {
-    run.advance(time);
-    const auto check = inspect(run, particles, run.configuration(time));
-    ASSERT_FALSE(check.broken) << time << ": guard " << static_cast<int>(check.broken->guard) << ", "
-                               << check.broken->found << " > " << check.broken->bound;
-  }
-}
-template <class Chain, class Law>
-void expect_silent(const Law& law, const std::shared_ptr<const Particles<double>>& particles) {
-  expect_silent(Simulation<double, Law, Chain>(law, Chain(particles, 0.)), *particles);
-}
-
-TEST(Guards, AreSilentOnRunsThatAreRight) {
+TEST(Guards, AreSilentOnAGasWithoutEvents) {
   for (const auto& particles : {uniform_rows(300), gaussian_ring(200, 200)}) {
-    expect_silent<GapChain<double>>(Dry(0.99, 1e-3), particles);
-    expect_silent<GapChain<double>>(Dry(1., 0.), particles);
-    expect_silent<ClusterChain<double>>(Wet<double>(0.01), particles);
-    expect_silent(StickyGas<double>(particles, 0.), *particles);
+    StickyGas<double> gas(particles, 0.);
+    for (const double time : {1., 10., 100., 500.}) {
+      gas.advance(time);
+      EXPECT_FALSE(inspect(gas, *particles, gas.configuration(time)).broken) << time;
+    }
   }
-  expect_silent<PositionChain<double>>(Dry(0.99, 1e-2), uniform_rows(300));
 }
 
 // Three elastic particles of different masses between walls: closing speeds cease to add up to 0 by rounding, so a wall

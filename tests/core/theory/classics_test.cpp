@@ -161,10 +161,8 @@ TEST(CollapseNumber, OfRingsIsThatOfFreeParticlesOrMore) {
         const auto particles =
             std::make_shared<Ring<double>>(count, static_cast<double>(count), 1., gaussian_velocity(7, replica),
                                            uniform_displacement(0.4, 7, replica));
-        Policy<double> policy;
-        policy.collapse = CollapsePolicy::stop;
-        policy.stop_gap = 1e-12;
-        collapsed += gap_run<double>(particles, Inelastic<double>(eps), policy).advance(1e4) == Status::collapsed;
+        auto run = gap_run<double>(particles, Inelastic<double>(eps), {CollapsePolicy::stop, 1e-12});
+        collapsed += run.advance(1e4) == Status::collapsed;
       }
       EXPECT_EQ(collapsed, few ? 0 : 20) << eps << ", " << count << " particles";
     }

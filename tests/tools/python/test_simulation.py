@@ -98,18 +98,6 @@ class Bytes(small.Case):
                             self.assertEqual(live.status, run.status)
                         self.assertTrue(filecmp.cmp("run.h5", "live.h5", shallow=False))
 
-    def test_scenes_are_names_files_texts_dicts_and_results(self):
-        with cradle.run("fig5", output="fig5.h5", progress=False) as run, open("live_fig5.toml", "w") as file:
-            file.write(run.scene_text)
-            energy = run.series.energy[-1]
-            for scene in ("fig5", file.name, run.scene_text, run.scene, run):
-                file.flush()
-                sim = cradle.Simulation(scene)
-                sim.advance()
-                self.assertEqual(sim.energy, energy)
-        self.assertEqual(sim.name, "fig5")
-        self.assertEqual(cradle.Simulation("fig5", seed=7).scene["initial"]["seed"], 7)
-
 
 class State(small.Case):
     def test_that_of_snapshots_and_series(self):
@@ -158,6 +146,11 @@ class State(small.Case):
         for name, member in vars(cradle.Simulation).items():
             if isinstance(member, property):
                 self.assertTrue(member.__doc__, name)
+
+    def test_name_and_seed(self):
+        with cradle.open(small.shock()) as run:
+            sim = cradle.Simulation(run, seed=7)
+        self.assertEqual((sim.name, sim.scene["initial"]["seed"]), ("fig2", 7))
 
     def test_shown(self):
         sim = cradle.Simulation("fig2", set=small.SHOCK | {"title": "<b>"})

@@ -94,41 +94,35 @@ function microscopeMass(world, particle, e) {
 }
 
 // The order of the particles right after collision e: {next, previous}, functions of a particle, -1 beyond the ends. If
-// particles merge or pass, the order is computed from the nearest of several stored ones.
+// particles merge or pass, the links of the last order are changed to this one, and the last one is no longer valid.
 function microscopeOrder(world, e) {
   const { particles, ring } = world;
   const first = { next: particle => particle + 1 < particles ? particle + 1 : ring ? 0 : -1,
                   previous: particle => particle > 0 ? particle - 1 : ring ? particles - 1 : -1 };
   if (world.keepsOrder) return first;
-  if (!world.orders) {
-    world.stride = Math.max(1024, Math.ceil(world.n * particles / 8e6));
-    const links = link => Int32Array.from({ length: particles }, (_, i) => link(i));
-    world.orders = [[links(first.next), links(first.previous)]];
-  }
-  const wanted = Math.floor((e + 1) / world.stride);
-  while (world.orders.length <= wanted) {
-    const done = world.orders.length - 1, [next, previous] = world.orders[done].map(links => links.slice());
-    for (let k = done * world.stride; k < (done + 1) * world.stride; ++k) microscopeRelink(world, k, next, previous);
-    world.orders.push([next, previous]);
-  }
-  const [next, previous] = world.orders[wanted].map(links => links.slice());
-  for (let k = wanted * world.stride; k <= e; ++k) microscopeRelink(world, k, next, previous);
-  return { next: particle => next[particle], previous: particle => previous[particle] };
+  const links = link => Int32Array.from({ length: particles }, (_, i) => link(i));
+  const order = world.order ||= { e: -1, next: links(first.next), previous: links(first.previous) };
+  while (order.e < e) microscopeRelink(world, ++order.e, order, true);
+  while (order.e > e) microscopeRelink(world, order.e--, order, false);
+  return { next: particle => order.next[particle], previous: particle => order.previous[particle] };
 }
 
-function microscopeRelink(world, e, next, previous) {
-  const a = world.left[e], b = world.right[e];
+// Makes the links those right after collision e from those right before it, or the other way round.
+function microscopeRelink(world, e, { next, previous }, forwards) {
   const link = (l, r) => {
     if (l >= 0) next[l] = r;
     if (r >= 0) previous[r] = l;
   };
   if (world.event[e] === MICROSCOPE.pass) {
+    const [a, b] = forwards ? [world.left[e], world.right[e]] : [world.right[e], world.left[e]];
     const before = previous[a], behind = next[b];
     link(before === b ? a : before, b);
     link(b, a);
     link(a, behind === a ? b : behind);
   } else if (world.event[e] === MICROSCOPE.merge) {
-    const gone = microscopeGone(world, e);
-    link(previous[gone], next[gone]);
+    const gone = microscopeGone(world, e), before = previous[gone], behind = next[gone];  // which it keeps
+    if (forwards) return link(before, behind);
+    link(before, gone);
+    link(gone, behind);
   }
 }

@@ -6,12 +6,12 @@ import glob
 import html
 import importlib.machinery
 import importlib.util
-import operator
 import os
 import re
 import sys
 import warnings
 from collections.abc import Callable
+from numbers import Integral
 from types import ModuleType
 from typing import TYPE_CHECKING, Any, NamedTuple, Union
 
@@ -132,9 +132,9 @@ class Simulation:
 
     def step(self, n: int = 1) -> None:
         """Makes the next n collisions, or all until run.until if these are fewer; the state is that after the last."""
-        if not whole(n) or n < 0:
+        if not isinstance(n, Integral) or n < 0:
             raise Error(f"step: not a number of collisions (found {n!r}): give a whole number from 0 on", BAD_INPUT)
-        self._compute(decimal_of(self._run.until), min(operator.index(n), MOST_COLLISIONS))
+        self._compute(decimal_of(self._run.until), min(int(n), MOST_COLLISIONS))
 
     def stop(self) -> None:
         """Ends the run at its last collision, with the outcome "interrupted", so that write() writes what has been
@@ -327,21 +327,13 @@ def decimal_of(value: Time) -> decimal.Decimal:
     return number
 
 
-def whole(value: Any) -> bool:
-    try:
-        operator.index(value)
-    except TypeError:
-        return False
-    return True
-
-
 def threads_of(threads: int | None) -> int:
     if threads is None:
         return 0
-    if not whole(threads) or not 0 <= threads <= MOST_THREADS:
+    if not isinstance(threads, Integral) or not 0 <= threads <= MOST_THREADS:
         raise Error(f"threads: not a number of threads (found {threads!r}): give a whole number up to "
                     f"{MOST_THREADS}, 0 or None for all processors", BAD_INPUT)
-    return operator.index(threads)
+    return int(threads)
 
 
 def module() -> ModuleType:

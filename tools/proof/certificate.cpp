@@ -194,14 +194,13 @@ Result certified_result(Certified run) {
   }
   exact.columns.push_back({"time", "t", "of the sample", time_text});
   const auto of_samples = [&](auto of) { return numbers_of(c.samples, of); };
-  using Sample = CertainSample;
   certificate.columns = {
-      {"time", "t", "up to which the run is proved", of_samples(&Sample::time)},
-      {"collisions", "1", "proved until then", of_samples(&Sample::collisions)},
-      {"widest", "1", "largest radius of a place in l, as a power of ten", of_samples(&Sample::widest)},
-      {"gap", "1", "smallest gap in l, as a power of ten", of_samples(&Sample::least_gap)},
+      {"time", "t", "up to which the run is proved", of_samples(&CertainSample::time)},
+      {"collisions", "1", "proved until then", of_samples(&CertainSample::collisions)},
+      {"widest", "1", "largest radius of a place in l, as a power of ten", of_samples(&CertainSample::widest)},
+      {"gap", "1", "smallest gap in l, as a power of ten", of_samples(&CertainSample::least_gap)},
       {"widest_of_gap", "1", "largest radius of a gap against the gap, as a power of ten",
-       of_samples(&Sample::widest_of_gap)}};
+       of_samples(&CertainSample::widest_of_gap)}};
   const auto own = std::ranges::find(result.groups, "series", &Group::name);
   // Samples that a collision falls upon are not proved: the bounds then have rows of their own.
   const bool joined = own != result.groups.end() && own->columns.front().rows() == sampled.size();

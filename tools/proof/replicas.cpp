@@ -101,7 +101,6 @@ std::string replicas_text(const CertifiedReplicas& run) {
 }
 
 Result replicas_result(const CertifiedReplicas& run) {
-  using Row = CertifiedReplica;
   const auto of_rows = [&](auto of) { return numbers_of(run.replicas, of); };
   const std::uint64_t all = proved_of(run);
   Result result;
@@ -112,16 +111,16 @@ Result replicas_result(const CertifiedReplicas& run) {
   const std::string unit = "m l^2/t^2";
   const Quantity energy{"series", "energy", unit, "kinetic energy, of those that are proved", 0, run.times.size()};
   result.groups.push_back(statistics_group("ensemble/series/energy", energy, run.energy));
-  result.groups.push_back(
-      {"replicas",
-       {},
-       {{"index", "1", "of the replica", of_rows(&Row::index)},
-        {"proved", "1", "1: to the end; 0: undecided", of_rows(&Row::proved)},
-        {"digits", "1", "of the proof", of_rows(&Row::digits)},
-        {"collisions", "1", "proved", of_rows(&Row::collisions)},
-        {"energy_low", unit, "lower bound of the energy at the last sample that is proved",
-         of_rows([](const Row& row) { return row.energy.low; })},
-        {"energy_high", unit, "upper bound of it", of_rows([](const Row& row) { return row.energy.high; })}}});
+  result.groups.push_back({"replicas",
+                           {},
+                           {{"index", "1", "of the replica", of_rows(&CertifiedReplica::index)},
+                            {"proved", "1", "1: to the end; 0: undecided", of_rows(&CertifiedReplica::proved)},
+                            {"digits", "1", "of the proof", of_rows(&CertifiedReplica::digits)},
+                            {"collisions", "1", "proved", of_rows(&CertifiedReplica::collisions)},
+                            {"energy_low", unit, "lower bound of the energy at the last sample that is proved",
+                             of_rows([](const CertifiedReplica& row) { return row.energy.low; })},
+                            {"energy_high", unit, "upper bound of it",
+                             of_rows([](const CertifiedReplica& row) { return row.energy.high; })}}});
   result.groups.back().columns.front().names = true;
   return result;
 }

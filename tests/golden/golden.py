@@ -21,6 +21,8 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 TABLE = os.path.join(HERE, "golden.txt")
 WRITERS = ("run", "ensemble", "sweep", "merge", "certify", "trust", "threshold", "words")
 LACKING = {"float128": "float128", "mpfr": r"mpfr|certify|trust|threshold|words|initial\.word"}  # in some builds
+# Rows whose last digits are those of a library, which this was when they were made: arithmetic and roots.
+OF_LIBRARY = {"Boost 1_74": "cpp_bin_float", "compiler: 12": "float128"}
 
 
 def call(program, folder, *words):
@@ -114,10 +116,10 @@ def main():
         lines = table.read().splitlines()
     rows = {number: line.split(" ", 3) for number, line in enumerate(lines) if line and not line.startswith("#")}
     types = call(program, HERE, "--version").stdout
-    lacking = "|".join(rows for name, rows in LACKING.items() if name not in types) or "$^"
+    left_out = "|".join(rows for name, rows in (LACKING | OF_LIBRARY).items() if name not in types) or "$^"
     wrong = []
     for number, (*expected, row) in list(rows.items())[first - 1::step]:
-        if re.search(lacking, row):
+        if re.search(left_out, row):
             continue
         found, message = checksums(program, row)
         if found[0] == "2":

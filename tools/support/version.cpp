@@ -1,5 +1,6 @@
 #include "cradle/tools/support/version.hpp"
 
+#include <boost/version.hpp>
 #include <type_traits>
 
 #include <fmt/format.h>
@@ -23,8 +24,8 @@ std::string build_description() {
 #else
   const char* mpi = "not in this build";
 #endif
-  return fmt::format("cradle {}\ncompiler: {}\noptions: {}\nscalar types: {}\nMPI: {}", version, __VERSION__,
-                     CRADLE_BUILD_OPTIONS, types, mpi);
+  return fmt::format("cradle {}\ncompiler: {}, Boost {}\noptions: {}\nscalar types: {}\nMPI: {}", version, __VERSION__,
+                     BOOST_LIB_VERSION, CRADLE_BUILD_OPTIONS, types, mpi);
 }
 
 Error of_version(const std::string& path, std::uint64_t found, std::uint64_t here) {

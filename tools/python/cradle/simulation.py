@@ -6,6 +6,7 @@ import glob
 import html
 import importlib.machinery
 import importlib.util
+import inspect
 import os
 import re
 import sys
@@ -55,7 +56,7 @@ def of_run(name: str, convert: Callable[[Any], Any] = lambda value: value) -> An
 
 def documented(simulation: type) -> type:
     """Gives properties their lines of the class's documentation, in which the manual's site finds them."""
-    for name, text in re.findall(r"^    (\w+): (.+)$", simulation.__doc__ or "", re.MULTILINE):
+    for name, text in re.findall(r"^(\w+): (.+)$", inspect.cleandoc(simulation.__doc__ or ""), re.MULTILINE):
         if isinstance(of_class := vars(simulation).get(name), property):
             of_class.__doc__ = text
     return simulation

@@ -29,19 +29,21 @@ std::string_view nearest_key(std::string_view key) {
   return nearest;
 }
 
-// Keys that users may expect, and what to do instead.
+// Keys that users may expect in this table, and what to do instead.
 struct OtherNames {
-  std::vector<std::string_view> keys;
+  std::string_view table;
+  std::vector<std::string_view> names;
   std::string_view advice;
 };
 const OtherNames other_names[] = {
-    {{"initial.temperature"}, "give initial.variance, the temperature over the mass: T for particles of mass 1"},
-    {{"initial.diameter", "initial.diameters", "initial.radius", "initial.size"},
+    {"initial", {"temperature"}, "give initial.variance, the temperature over the mass: T for particles of mass 1"},
+    {"initial",
+     {"diameter", "diameters", "radius", "size"},
      "particles are points; a rod of the length d is one whose distances to all that it meets are shorter by d"},
-    {{"law.epsilon", "law.e", "law.r"}, "did you mean law.restitution?"},
-    {{"gravity.g"}, "did you mean gravity.acceleration?"},
-    {{"initial.n", "initial.N"}, "did you mean initial.particles?"},
-    {{"run.time", "run.end"}, "did you mean run.until?"},
+    {"law", {"epsilon", "e", "r"}, "did you mean law.restitution?"},
+    {"gravity", {"g"}, "did you mean gravity.acceleration?"},
+    {"initial", {"n", "N"}, "did you mean initial.particles?"},
+    {"run", {"time", "end"}, "did you mean run.until?"},
 };
 
 void refuse_unknown_key(std::string_view key, const Value& value) {
@@ -56,8 +58,9 @@ void refuse_unknown_key(std::string_view key, const Value& value) {
     }
   }
   for (const OtherNames& other : other_names)
-    if (std::ranges::find(other.keys, key) != other.keys.end())
-      throw Error(value.place, "unknown key", describe(value), other.advice);
+    for (const std::string_view name : other.names)
+      if (key == fmt::format("{}.{}", other.table, name))
+        throw Error(value.place, "unknown key", describe(value), other.advice);
   const auto nearest = nearest_key(key);
   throw Error(value.place, "unknown key", describe(value),
               nearest.empty() ? "remove it; the manual lists all keys" : fmt::format("did you mean {}?", nearest));

@@ -52,9 +52,6 @@ class Runs(small.Case):
                                                   (2, "replicas: not a whole number", cradle.ensemble, "fig2", 0)):
             self.assertNotIn("Traceback", self.refused(status, message, call, *arguments).message)
 
-    def test_files_that_cannot_be_written(self):
-        self.refused(4, "", cradle.run, "fig5", output="no/such/folder.h5")
-
     def test_lost_order_carries_what_there_is(self):
         error = self.refused(5, "", cradle.run, "collapse3", {"run.coordinates": "absolute"}, output="lost.h5")
         with error.result as result:

@@ -70,6 +70,11 @@ class Files(small.Case):
             self.assertFalse(result.sealed)
             self.refused("lacking.h5", "lacks data", lambda _: cradle.plot.shock(result))
 
+    def test_places_that_cannot_be_written(self):
+        for call, of, output in ((cradle.run, "fig5", "no/such.h5"), (cradle.report, small.shock(), "no/such.html"),
+                                 (cradle.plot.save, small.shock(), "no/such.png")):
+            super().refused(4, "no/such", call, of, output=output)
+
     def test_pipes_and_devices_are_no_results(self):
         os.mkfifo("pipe.h5")
         for path in ("pipe.h5", "/dev/zero", "a\0b"):

@@ -117,8 +117,7 @@ class Pictures(small.Case):
             cradle.plot.energy(small.shock())
             self.assertEqual(matplotlib.rcParams["lines.linewidth"], 7)
 
-    def test_places_that_cannot_be_written(self):
-        self.refused(4, "", cradle.plot.save, small.shock(), "no/such.png")
+    def test_kinds_that_cannot_be_written(self):
         self.refused(2, "", cradle.plot.save, small.shock(), "it.gif")
         self.assertFalse(os.path.exists("it.gif"))
 

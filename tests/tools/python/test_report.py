@@ -196,9 +196,6 @@ class Reports(small.Case):
         self.assertNotIn("<script>alert", text)
         self.assertIn("&lt;script&gt;alert(1)", text)
 
-    def test_leave_no_half_a_page(self):
-        self.refused(4, "", cradle.report, small.shock(), "no/such/folder.html")
-
     def test_citation_has_the_version(self):
         printed, version = program.call(["cite"]).out, program.call(["--version"]).out.split()[1]
         self.assertIn(f"version {version}:", printed)

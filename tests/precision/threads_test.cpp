@@ -1,9 +1,10 @@
 // Threads in the types whose queue keys are rounded times: double-double, binary128 and MPFR, whose working precision
 // is one value per process set before the threads start. Proves: one run in segments has the bits of the plain loop
-// there too, the energy lost included, which these types sum up gap by gap; two runs at once give the bits of the same
-// two runs in turn.
+// there too, the energy lost included, which these types sum up gap by gap; in all types two runs at once give the bits
+// of the same two runs in turn.
 #include "cradle/tests/core/segmented.hpp"
 
+#include <optional>
 #include <thread>
 
 #include "cradle/tests/core/compare.hpp"
@@ -45,36 +46,28 @@ TYPED_TEST(WideThreads, SegmentsOfParticlesThatMergeOnARing) {
 
 // ---- runs side by side
 
-template <class T> struct Result {
-  Configuration<T> configuration;
-  T energy_lost{0};
-  Counts counts;
-};
+template <class P> using Threads = InPrecision<P>;
+TYPED_TEST_SUITE(Threads, EachKindOfPrecision, PrecisionName);
 
 // The restitution distinguishes the runs.
-template <class T> Result<T> result(const char* restitution) {
-  auto run = gap_run(rshock<T>(200), Inelastic<T>(from_text<T>(restitution), from_text<T>("1e-3")));
-  const T end(75);
-  run.advance(end);
-  return {configuration_at(run, end), run.energy_lost(), run.counts()};
-}
-
-TYPED_TEST(WideThreads, RunsAtOnceHaveTheBitsOfRunsInTurn) {
+TYPED_TEST(Threads, RunsAtOnceHaveTheBitsOfRunsInTurn) {
   using T = typename TypeParam::Scalar;
-  const char* const restitutions[] = {".9", ".92"};
-  const Result<T> in_turn[] = {result<T>(restitutions[0]), result<T>(restitutions[1])};
-  ASSERT_FALSE(identical(in_turn[0].configuration, in_turn[1].configuration));
+  const T end(75);
+  const auto run = [&](const char* restitution) {
+    auto made = gap_run(rshock<T>(200), Inelastic<T>(from_text<T>(restitution), from_text<T>("1e-3")));
+    made.advance(end);
+    return made;
+  };
+  const auto first = run(".9"), second = run(".92");
+  ASSERT_FALSE(identical(first.configuration(end), second.configuration(end)));
   for (int repeat = 0; repeat < 3; ++repeat) {
-    Result<T> at_once[2];
+    std::optional<GapRun<T>> at_once[2];
     {
-      std::jthread first([&] { at_once[0] = result<T>(restitutions[0]); });
-      std::jthread second([&] { at_once[1] = result<T>(restitutions[1]); });
+      std::jthread one([&] { at_once[0] = run(".9"); });
+      std::jthread other([&] { at_once[1] = run(".92"); });
     }
-    for (const std::size_t k : {0U, 1U}) {
-      EXPECT_TRUE(identical(at_once[k].configuration, in_turn[k].configuration)) << k;
-      EXPECT_TRUE(at_once[k].energy_lost == in_turn[k].energy_lost) << k;
-      EXPECT_TRUE(identical(at_once[k].counts, in_turn[k].counts)) << k;
-    }
+    expect_same_state(first, *at_once[0], end);
+    expect_same_state(second, *at_once[1], end);
   }
 }
 

@@ -1,21 +1,15 @@
-// Compares every way of holding the same particles, dry and wet. Proves: gaps and absolute positions make the same
-// collisions. Runs side by side do not change a bit. (What else must not change one is in engine/same_bits_test.cpp; a
-// loop without a queue makes the same collisions in precision/filtered_queue_test.cpp.)
+// Gaps and absolute positions of the same particles make the same collisions, of rows and cold gases of any masses for
+// long. (What must not change a bit is in engine/same_bits_test.cpp; a loop without a queue makes the same collisions in
+// precision/filtered_queue_test.cpp, an exact gas in precision/exact_gas_test.cpp.)
 #include <gtest/gtest.h>
 
-#include <vector>
-
-#include "cradle/core/chains/cluster_chain.hpp"
 #include "cradle/tests/core/compare.hpp"
-#include "cradle/tests/core/digits.hpp"
 #include "cradle/tests/core/fixtures.hpp"
-#include "cradle/tests/precision/reference_gas.hpp"
 
 namespace cradle::test::twins_test {
 
-// With rows of speed 1/2 collapse sets in at t = 2/(1 - (4/pi) atan sqrt eps).
-const Inelastic<double> law(0.98, 1e-5);    // t = 311
-const Inelastic<double> softer(0.9, 1e-3);  // t = 60
+// With rows of speed 1/2 collapse sets in at t = 2/(1 - (4/pi) atan sqrt eps) = 311.
+const Inelastic<double> law(0.98, 1e-5);
 
 // Runs both to each time in turn: same collisions in the same order, same state to rounding.
 template <class First, class Second>
@@ -47,58 +41,6 @@ TEST(Twins, GapsAndPositionsMakeTheSameCollisions) {
   expect_same_collisions(gap_run(mixed, law), position_run(mixed, law), 5, 100, 4e-11, 5000);
   for (const auto& masses : {unequal_rows<double>({}, three_masses), cold_gas(32, HotPlace::middle)})
     expect_same_collisions(mass_run(masses, law), position_run(masses, law), 10, 100, 4e-11, 400);
-}
-
-TEST(Twins, StepsOfSeveralRunsSideBySideDoNotChangeABit) {
-  constexpr double end = 150;
-  std::vector<GapRun<double>> in_turn, side_by_side;
-  for (const ParticleIndex count : {200, 300}) {
-    in_turn.push_back(gap_run(rshock<double>(count), softer));
-    side_by_side.push_back(gap_run(rshock<double>(count), softer));
-    ASSERT_EQ(in_turn.back().advance(end), Status::reached);
-  }
-  for (auto& run : side_by_side) run.head_for(end);
-  for (bool going[2] = {true, true}; going[0] || going[1];)
-    for (std::size_t k : {0U, 1U}) going[k] = going[k] && side_by_side[k].step();
-  for (std::size_t k : {0U, 1U}) {
-    EXPECT_EQ(side_by_side[k].status(), Status::reached);
-    expect_same_state(in_turn[k], side_by_side[k], end);
-    EXPECT_EQ(in_turn[k].counts().close_calls, side_by_side[k].counts().close_calls);
-  }
-}
-
-// In absolute positions, the next collision found by looking at every pair. With 50 digits neither side's rounding,
-// 1e-50, shows within some 1e20 of amplification, which 500 collisions are far from; a wrong collision would be off by
-// orders of the spacing.
-TEST(Twins, WetGapsAndPositionsMakeTheSameCollisions) {
-  using Wide = Digits<50>;
-  const auto mass = [](ParticleIndex i) { return Wide(1 + bits_of(i, 40, 7)) / Wide(4); };
-  const auto on_line = as_list(*rmix<Wide>(60), mass);
-  for (const double loss : {.0025, 0.025, .25}) {
-    SCOPED_TRACE(loss);
-    Simulation run(Wet<Wide>{Wide(loss)}, ClusterChain<Wide>(on_line, Wide(0)));
-    auto twin = gas_like(*on_line);
-    twin.law = GasLaw::wet, twin.loss = Wide(loss);
-    for (int t = 10; t <= 120; t += 10) {
-      ASSERT_EQ(run.advance(Wide(t)), Status::reached);
-      twin.advance(Wide(t));
-      ASSERT_EQ(run.counts().collisions, twin.collisions) << t;
-      ASSERT_EQ(run.counts().merges, twin.merges) << t;
-      const auto c = run.configuration(Wide(t));
-      ASSERT_EQ(c.from, 0);
-      ASSERT_EQ(c.to, 59);
-      ASSERT_EQ(c.x.size(), twin.cells.size());
-      for (std::size_t j = 0; j < c.x.size(); ++j) {
-        const auto& cell = twin.cells[j];
-        ASSERT_EQ(c.index[j], cell.particles.front()) << t;
-        ASSERT_EQ(c.m[j], cell.m) << t;
-        ASSERT_LE(abs(c.x[j] - twin.place(cell)), Wide(1e-30)) << t << ", particle " << c.index[j];
-        ASSERT_LE(abs(c.v[j] - twin.velocity(cell)), Wide(1e-30)) << t << ", particle " << c.index[j];
-      }
-    }
-    EXPECT_GT(run.counts().collisions, 60U);
-    EXPECT_GT(run.counts().merges, 10U);
-  }
 }
 
 }  // namespace cradle::test::twins_test

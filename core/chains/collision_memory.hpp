@@ -13,7 +13,7 @@ namespace cradle {
 
 template <Real T> class CollisionMemory {
  public:
-  // Whether the last collisions at all these gaps were longer ago than `span`. Records the present collision at the gap
+  // Whether the last collisions at all these gaps were `span` or longer ago. Records the present collision at the gap
   // s. `start` is the local time at which the run began, `slots` the largest number of gaps.
   bool rested(std::initializer_list<Slot> gaps, Slot s, const T& now, const T& span, const T& start,
               std::size_t slots) {
@@ -22,7 +22,7 @@ template <Real T> class CollisionMemory {
       last_.assign(slots, never_);
     }
     bool all = true;
-    for (const Slot gap : gaps) all = all && now - last_[gap] > span;
+    for (const Slot gap : gaps) all = all && !(now - last_[gap] < span);
     last_[s] = now;
     return all;
   }

@@ -204,7 +204,7 @@ template <Real T> class PositionChain {
     bool collided = false;
     static auto state(auto& self) { return std::tie(self.x, self.v, self.time, self.m, self.collided); }
     bool holds_numbers() const { return is_finite(x) && is_finite(v) && is_finite(time) && is_positive(m); }
-    bool rested(const T& now, const T& contact_time) const { return !collided || now - time > contact_time; }
+    bool rested(const T& now, const T& contact_time) const { return !collided || !(now - time < contact_time); }
   };
 
   template <LawChoice Law> Outcome<T> strike_wall(const Law& law, Slot s, const T& time) {

@@ -193,4 +193,20 @@ TEST(ManyParticles, AProvedCollapseIsFollowedAsBefore) {
   EXPECT_NEAR(run.collapse().time.value(), 12. / 7, run.collapse().uncertainty);
 }
 
+// As the manual says: elastic if the collision before is *less* than that time ago. The second collision, of the middle
+// particle with the right one, comes just 1 after the first.
+TEST(ContactTimePolicy, AnIntervalOfJustThatTimeDissipates) {
+  const auto particles = std::make_shared<const List<double>>(std::vector{0., 1., 1.75}, std::vector{1., 0., 0.});
+  for (const double contact_time : {1., 1 + 0x1p-52}) {
+    const ContactTime<double> limited(Inelastic(0.5), contact_time);
+    Simulation gaps(limited, GapChain<double>(particles, 0.));
+    Simulation positions(limited, PositionChain<double>(particles, 0.));
+    const double lost = 0.75 * (1 + (contact_time > 1 ? 0 : 0.75 * 0.75)) / 4;  // (1 - eps^2) w^2/4
+    EXPECT_EQ(gaps.advance(2.), Status::reached);
+    EXPECT_EQ(positions.advance(2.), Status::reached);
+    EXPECT_EQ(gaps.energy_lost(), lost);
+    EXPECT_EQ(positions.energy_lost(), lost);
+  }
+}
+
 }  // namespace cradle::test::collapse_policy_test

@@ -558,6 +558,11 @@ class InBrowser(unittest.TestCase):
                 self.assertLess(worst, 1e-9, f"collision {event}, {span} x {depth}")
                 compared += seen > 3
         self.assertGreaterEqual(compared, 8)
+        # Once all passes and mergers are undone, the particles are in their first order.
+        self.assertTrue(self.browser.run("""(() => { const w = cradleMicroscopeTest.world(), last = w.particles - 1;
+            const order = microscopeOrder(w, -1);
+            const ordered = i => order.next(i) === i + 1 && order.previous(i + 1) === i;
+            return w.x0.every((_, i) => i === last || ordered(i)); })()"""))
 
     def test_gaps_are_those_of_snapshots_and_charts_are_where_positions_are(self):
         rows = {"run.until": 250, "output.snapshots": [0, 50, 150, 250], "output.profiles.times": [10]}

@@ -18,64 +18,48 @@ namespace cradle::test::extremes_test {
 
 constexpr double u = 0x1p-53;
 
-// Every scalar starts from the same doubles.
-template <class T>
-Scene<T> in(const std::vector<double>& x, const std::vector<double>& v, const std::vector<double>& m) {
+// The same doubles in every scalar type.
+template <class T> Scene<T> in(const Particles<double>& particles) {
+  std::vector<double> x, v, m;
+  for (ParticleIndex b = 0; b < particles.count(); ++b)
+    x.push_back(particles.position(b)), v.push_back(particles.velocity(b)), m.push_back(particles.mass(b));
   return list<T>(numbers<T>(x), numbers<T>(v), numbers<T>(m));
 }
 
-template <class T> Sequence collisions_of(MassRun<T> run, const T& end, std::uint64_t& collisions) {
-  Sequence sequence;
-  run.advance(end, [&](const Collision<T>& c) { sequence.add(c.left); });
-  EXPECT_EQ(run.chain().account().order_lost, 0U);
-  collisions = run.counts().collisions;
-  return sequence;
-}
-
-template <class T>
-void expect_collisions_of_double(double restitution, double cutoff, const std::vector<double>& x,
-                                 const std::vector<double>& v, const std::vector<double>& m, double end,
+void expect_collisions_of_double(double restitution, double cutoff, const Scene<double>& particles, double end,
                                  std::uint64_t least_collisions) {
-  std::uint64_t in_double = 0, in_wide = 0;
-  const Sequence narrow =
-      collisions_of(mass_run(in<double>(x, v, m), Inelastic<double>(restitution, cutoff)), end, in_double);
-  const Sequence wide =
-      collisions_of(mass_run(in<T>(x, v, m), Inelastic<T>(T(restitution), T(cutoff))), T(end), in_wide);
-  EXPECT_EQ(in_double, in_wide);
-  EXPECT_TRUE(narrow == wide);
-  EXPECT_GE(in_double, least_collisions);
+  using T = double_double;
+  auto narrow = mass_run(particles, Inelastic<double>(restitution, cutoff));
+  auto wide = mass_run(in<T>(*particles), Inelastic<T>(T(restitution), T(cutoff)));
+  EXPECT_EQ(sequence_to(narrow, end), sequence_to(wide, T(end)));
+  EXPECT_EQ(narrow.counts().collisions, wide.counts().collisions);
+  EXPECT_EQ(narrow.account().order_lost + wide.account().order_lost, 0U);
+  EXPECT_GE(narrow.counts().collisions, least_collisions);
 }
 
 // Places 1e-300, 1e-290, ... 1, velocities falling from left to right by unequal steps.
 TEST(Extremes, GapsOverThreeHundredDecades) {
-  std::vector<double> x, v, m;
+  std::vector<double> x, v;
   for (int k = 0; k <= 30; ++k) {
     x.push_back(std::pow(10., -300 + 10 * k));
     v.push_back(-k - 0.01 * static_cast<double>(bits_of(k, 3, 31)));
-    m.push_back(1);
   }
-  expect_collisions_of_double<double_double>(1, 0, x, v, m, 10, 31 * 30 / 2);
-  expect_collisions_of_double<double_double>(0.75, 1e-3, x, v, m, 10, 100);
+  const Scene<double> particles = list(x, v);
+  expect_collisions_of_double(1, 0, particles, 10, 31 * 30 / 2);
+  expect_collisions_of_double(0.75, 1e-3, particles, 10, 100);
   // Elastic: all have passed each other and part at once the velocities are sorted.
-  auto run = gap_run(in<double>(x, v, {}), Inelastic<double>(1, 0));
+  auto run = gap_run(particles, Inelastic<double>(1, 0));
   ASSERT_EQ(run.advance(10), Status::reached);
   const auto c = configuration_at(run, 10.);
   EXPECT_TRUE(std::all_of(c.closing_speed.begin(), c.closing_speed.end(), [](double w) { return w < 0; }));
   EXPECT_TRUE(std::all_of(c.gap.begin(), c.gap.end(), [](double g) { return g > 0; }));
 }
 
-std::vector<double> alternating(double ratio, std::size_t n) {
-  std::vector<double> m(n, 1);
-  for (std::size_t k = 1; k < n; k += 2) m[k] = ratio;
-  return m;
-}
-
 TEST(Extremes, MassesOfOneToATrillion) {
-  const auto even = rmix<double>(40);
-  std::vector<double> x, v;
-  for (ParticleIndex b = 0; b < 40; ++b) x.push_back(even->position(b)), v.push_back(even->velocity(b));
-  for (const double ratio : {1e12, 1e-12})
-    expect_collisions_of_double<double_double>(0.9, 1e-4, x, v, alternating(ratio, 40), 1.25, 5);
+  for (const double ratio : {1e12, 1e-12}) {
+    const auto alternating = [=](ParticleIndex b) { return b % 2 == 0 ? 1 : ratio; };
+    expect_collisions_of_double(0.9, 1e-4, as_list(*rmix<double>(40), alternating), 1.25, 5);
+  }
 }
 
 template <class P> using EveryExtreme = InPrecision<P>;

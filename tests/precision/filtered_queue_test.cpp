@@ -70,10 +70,8 @@ template <class Run, class T> Recorded<T> recorded(Run run, const T& end) {
   EXPECT_EQ(record.origins.size(), run.counts().origin_moves);
   EXPECT_EQ(run.chain().account().order_lost, 0U);
   const T seen = status == Status::reached ? end : run.last_collision_time();
-  EXPECT_TRUE(same_collisions(run.counts(), unobserved.counts()));
+  expect_same_state(run, unobserved, seen);
   EXPECT_EQ(run.counts().close_calls, unobserved.counts().close_calls);
-  EXPECT_TRUE(run.energy_lost() == unobserved.energy_lost());
-  EXPECT_TRUE(identical(run.configuration(seen), unobserved.configuration(seen)));
   return record;
 }
 
@@ -140,11 +138,7 @@ std::uint64_t expect_index_bits_change_no_bit(const Scene<T>& particles, const L
   for (int k = 0; k < steps; ++k) {
     t += step;
     for (auto* each : {&run, &run13, &run20}) EXPECT_EQ(each->advance(t), Status::reached);
-    for (const auto* other : {&run13, &run20}) {
-      EXPECT_TRUE(same_collisions(run.counts(), other->counts())) << to_double(t);
-      EXPECT_TRUE(run.energy_lost() == other->energy_lost()) << to_double(t);
-      EXPECT_TRUE(identical(run.configuration(t), other->configuration(t))) << to_double(t);
-    }
+    for (const auto* other : {&run13, &run20}) expect_same_state(run, *other, t);
   }
   return run20.counts().close_calls;
 }

@@ -100,22 +100,16 @@ TYPED_TEST(ShakenIn, AColumnHasTheSameCollisions) {
       if (shape) floor.motion = std::make_shared<WallMotion<S>>(*shape, S(1) / S(4), S(3), S(1) / S(2));
       return std::make_shared<Walled<S>>(rmix<S>(8), floor, std::nullopt, S(S(-3) / S(8)));
     };
-    const auto sequence = []<class S>(auto& run, const S& until) {
-      Sequence found;
-      EXPECT_EQ(run.advance(until, [&](const Collision<S>& c) { found.add(c.left); }), Status::reached);
-      EXPECT_GT(run.counts().collisions, 20U);
-      return found;
-    };
     const auto in_gaps = []<class S>(const std::shared_ptr<const Walled<S>>& particles) {
-      using Chain = GapChain<S, IndividualMasses<S>>;
-      return Simulation<S, Inelastic<S>, Chain>(Inelastic<S>(S(1)), Chain(particles, S(0)));
+      return Simulation(Inelastic<S>(S(1)), GapChain<S, IndividualMasses<S>>(particles, S(0)));
     };
     const std::shared_ptr<const Walled<T>> particles = column(std::type_identity<T>{});
     const T until(6);
     auto run = in_gaps(particles);
     auto twin = in_gaps(std::shared_ptr<const Walled<double>>(column(std::type_identity<double>{})));
-    const Sequence found = sequence(run, until);
-    EXPECT_EQ(found, sequence(twin, 6.));
+    const Sequence found = sequence_to(run, until);
+    EXPECT_EQ(found, sequence_to(twin, 6.));
+    EXPECT_GT(run.counts().collisions, 20U);
 
     const auto now = sample(run, T(0), until);
     const auto c = configuration_at(run, until);
@@ -126,9 +120,8 @@ TYPED_TEST(ShakenIn, AColumnHasTheSameCollisions) {
     EXPECT_LE(magnitude(off), T(64 * static_cast<std::int64_t>(run.counts().collisions)) *
                                   T(std::numeric_limits<T>::epsilon()) * scale);
     if (shape) continue;
-    using Positions = PositionChain<T>;
-    Simulation<T, Inelastic<T>, Positions> places(Inelastic<T>(T(1)), Positions(particles, T(0)));
-    EXPECT_EQ(found, sequence(places, until));
+    Simulation places(Inelastic<T>(T(1)), PositionChain<T>(particles, T(0)));
+    EXPECT_EQ(found, sequence_to(places, until));
     const auto d = configuration_at(twin, 6.);
     for (std::size_t j = 0; j < d.x.size(); ++j) EXPECT_NEAR(to_double(c.x[j]), d.x[j], 1e-12);
   }

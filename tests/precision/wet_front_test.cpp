@@ -8,8 +8,8 @@
 #include <gtest/gtest.h>
 
 #include "cradle/core/chains/cluster_chain.hpp"
-#include "cradle/core/initial/rows.hpp"
 #include "cradle/core/theory/wet_shock.hpp"
+#include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/precision/every_scalar.hpp"
 
 namespace cradle::test::wet_front_test {
@@ -18,10 +18,7 @@ template <class P> using WetFront = test::InPrecision<P>;
 TYPED_TEST_SUITE(WetFront, test::EveryPrecision, test::PrecisionName);
 
 template <class T> void expect_front(const T& loss, std::uint64_t turnover, int samples) {
-  const T speed = T(1) / T(2);
-  const auto rows = std::make_shared<Rows<T>>(symmetric_rows<T>(static_cast<ParticleIndex>(4 * turnover), speed, T(1),
-                                                                [](ParticleIndex) { return std::int64_t{0}; }));
-  Simulation run(Wet<T>{loss}, ClusterChain<T>{rows, T(0)});
+  Simulation run(Wet<T>{loss}, ClusterChain<T>{lattice_rows<T>(static_cast<ParticleIndex>(4 * turnover)), T(0)});
   theory::WetFrontRecursion<T> front(theory::WetShock<T>{loss});
   const auto end = theory::turnover_collision(theory::WetShock<T>{loss});
   ASSERT_TRUE(end);

@@ -346,7 +346,7 @@ template <Real T> class AnyEngineIn final : public AnyEngine {
 
  private:
   std::unique_ptr<Engine<T>> engine(const EngineOptions& options) const {
-    Policy<T> policy = policy_of<T>(run_.scene);
+    Policy<T> policy = policy_of<T>(run_.scene, options.restitution != nullptr);
     policy.interrupt = options.interrupt;
     policy.progress = [report = options.progress](const T& time, const Counts& counts) {
       report(to_double(time), counts);

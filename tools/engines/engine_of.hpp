@@ -21,11 +21,12 @@
 namespace cradle::tools {
 
 /// When a run of the scene stops by itself.
-template <Real T> Policy<T> policy_of(const Scene& scene) {
+// `by_function`: the restitution is a function, and not that of the scene.
+template <Real T> Policy<T> policy_of(const Scene& scene, bool by_function) {
   Policy<T> policy;
   // Elastic particles collapse only against a wall that loses energy; particles that stick do not collapse.
-  if (stops_at_collapse(scene) &&
-      (scene.law.restitution < Decimal("1") || scene.walls.left.dissipates() || scene.walls.right.dissipates()))
+  const bool dissipates = by_function || scene.law.restitution < Decimal("1");
+  if (stops_at_collapse(scene) && (dissipates || scene.walls.left.dissipates() || scene.walls.right.dissipates()))
     policy.collapse = cradle::CollapsePolicy::stop;
   if (scene.run.stop_gap) policy.stop_gap = number<T>(*scene.run.stop_gap);
   return policy;

@@ -124,8 +124,11 @@ def on_post_build(config, **_):
     (folder / "search_index.js").write_text(script, encoding="utf-8")
 
 
-def on_page_content(html, **_):
-    """In the documentation of the Python package, each argument gets a line of its own: `name: what it is`."""
+def on_page_content(html, page, **_):
+    """Long lines of the list of keys are wrapped. In the documentation of the Python package, each argument gets a line
+    of its own: `name: what it is`."""
+    if page.file.src_uri == "tools/manual/keys.md":
+        return html.replace("<code>", '<code class="wrapped">')
     if 'class="doc doc-contents' not in html:
         return html
     return re.sub(r"(<p>|\n)((?:\w+, )*\w+): ", lambda found: (found[1] if found[1] == "<p>" else "<br>\n")

@@ -258,6 +258,14 @@ class Functions(small.Case):
             self.refused(2, "a function", cradle.Simulation, "fig2", small.SHOCK | settings, restitution=law)
 
 
+    def test_a_restitution_of_elastic_particles_collapses_as_any(self):
+        scene = {"law": {"type": "inelastic", "restitution": 1}, "run": {"until": 10, "stop_gap": "1e-20"},
+                 "initial": {"type": "list", "x": [0, 1, 3], "v": [1, 0, -1]}}
+        sim = cradle.Simulation(scene, restitution=lambda w: 0.01)
+        sim.advance()
+        self.assertEqual(sim.outcome, "a gap below run.stop_gap")
+
+
 class Calls(small.Case):
     def endless(self):
         return cradle.Simulation("cooling", set=small.ENDLESS)

@@ -36,8 +36,10 @@ def draw_series(result, theory, units, axes):
              and np.ndim(result.series[name]["mean"]) == 1 and (result.series[name]["max"] > 0).any()]
     figure, axes = stacked(axes, len(shown), height=2.0, sharex=True)
     replicas = len(result.replicas.get("index", ()))
-    axes[0].set_title((f"{replicas} replicas; " if replicas else "") + "bands: standard error, extremes", loc="right",
-                      fontsize=8)
+    left = min((int(counts[-1]) for name, _ in shown if (counts := result.series[name].get("count")) is not None),
+               default=replicas)
+    axes[0].set_title((f"{replicas} replicas; " if replicas else "") + (f"{left} at the end; " if left < replicas else "")
+                      + "bands: standard error, extremes", loc="right", fontsize=8)
     axes[-1].set(xlabel=units.time_label(), xlim=(time[0], time[-1]))
     for ax, (name, label) in zip(axes, shown):
         band(ax, time, result.series[name], scale.get(name, 1), BLUE, lw=1.2, label="mean")

@@ -41,6 +41,7 @@ look    | xarray                | plotting xarray              | python3-xarray
 look    | qemu-x86_64           | command qemu-x86_64          | qemu-user
 look    | dpkg-shlibdeps        | command dpkg-shlibdeps       | dpkg-dev
 look    | file                  | command file                 | file
+look    | groff                 | command groff                | groff
 look    | pip                   | python pip                   | python3-pip
 look    | setuptools            | python setuptools            | python3-setuptools
 look    | wheel                 | python wheel                 | python3-wheel

@@ -1,5 +1,5 @@
 // Inelastic collapse of few particles: infinitely many collisions in a finite time.
-// n equal particles in the checkerboard pattern: every second gap closes at once, then the others, in turn;
+// In the checkerboard pattern of n equal particles every second gap closes at once, then the others, in turn;
 // mirror-symmetric data of 3 or 4 particles always are of this form, with gaps and closing speeds in proportion to
 // sin(pi k/n), k = 1 .. n-1. p_j: amplitude of the closing speeds of the gaps that close at collision j (length/time);
 // g_j: amplitude of the other gaps at that moment (length); eps: restitution; a = (1+eps) cos(pi/n), the coupling. With

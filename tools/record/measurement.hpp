@@ -1,6 +1,6 @@
 // A measurement: what a run can be asked to record beside its collisions. Each has a file here, with a row (what others
 // must know of it: its times and tables) and a class that finds, records and at the end tables its numbers.
-// measurements.hpp has the list of all; runs, files, ensembles and comparisons follow from it.
+// The list of all is in measurements.hpp; runs, files, ensembles and comparisons follow from it.
 //
 // The class has, of these, the members that it needs. `now` is a Moment (engines/moment.hpp), `put` takes tables.
 //

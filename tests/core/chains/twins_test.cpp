@@ -1,6 +1,6 @@
 // Gaps and absolute positions of the same particles make the same collisions, of rows and cold gases of any masses for
-// long. (What must not change a bit is in engine/same_bits_test.cpp; a loop without a queue makes the same collisions in
-// precision/filtered_queue_test.cpp, an exact gas in precision/exact_gas_test.cpp.)
+// long. (What must not change a bit is in engine/same_bits_test.cpp; a loop without a queue makes the same collisions
+// in precision/filtered_queue_test.cpp, an exact gas in precision/exact_gas_test.cpp.)
 #include <gtest/gtest.h>
 
 #include "cradle/tests/core/compare.hpp"

@@ -144,6 +144,7 @@ void MpiProcesses::abandon(const std::exception_ptr& error) const {
   const int status = status_of(error, message);
   fmt::print(stderr, "cradle: rank {}: {}\n", rank_, message);
   std::fflush(stderr);
+  std::this_thread::sleep_for(500ms);  // else Open MPI 5 may discard the message
   MPI_Abort(MPI_COMM_WORLD, status);
   std::abort();
 }

@@ -15,8 +15,7 @@ Exit run_study_command(const RunningOptions& options, const std::function<StudyP
   note_signals(interrupt);
   const std::unique_ptr<Processes> processes = make_processes(interrupt);
   StudyPlan plan;
-  const Exit failed = processes->together([&] { plan = make_plan(); });
-  if (failed != Exit::done) return failed;
+  if (!processes->together([&] { plan = make_plan(); })) return Exit::done;
   if (processes->rank() == 0) notify(same_replicas_warning(plan.study, plan.replicas.count));
   if (processes->rank() == 0 && !options.quiet) notify(plan.note);
   const std::string& output = plan.output;

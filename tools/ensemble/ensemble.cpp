@@ -109,10 +109,8 @@ EnsembleOutcome outcome_of(const EnsembleStore& store, const std::string& file) 
 
 // The part of rank 0, which handles the files.
 EnsembleOutcome lead(EnsembleStore& store, const EnsembleOptions& options, const std::string& file,
-                     Processes& processes) {
-  const std::vector<JobRange> jobs = jobs_left(store, options.replicas);
+                     Processes& processes, const std::vector<JobRange>& jobs) {
   const std::uint64_t wanted = options.replicas.count * store.states().size(), fresh = JobQueue(jobs).left();
-  if (fresh > 0) store.start_journal(0, options.replicas, options.journal_bytes);
   ReplicaProgress progress(options.progress, wanted - fresh, wanted);
   const int signal = processes.share(
       jobs, [&](const NextJob& next) { work(store, options, processes, next, [&] { progress.done(); }); },
@@ -134,7 +132,6 @@ EnsembleOutcome lead(EnsembleStore& store, const EnsembleOptions& options, const
 }
 
 EnsembleOutcome follow(EnsembleStore& store, const EnsembleOptions& options, Processes& processes) {
-  store.start_journal(processes.rank(), options.replicas, options.journal_bytes);
   const int signal =
       processes.share({}, [&](const NextJob& next) { work(store, options, processes, next, [] {}); }, {});
   if (signal == 0)
@@ -150,19 +147,22 @@ EnsembleOutcome run_study(const Study& study, const EnsembleOptions& options, co
                           Processes& processes) {
   std::optional<EnsembleStore> store;
   std::string account;
-  const Exit failed = processes.together([&] {
+  std::vector<JobRange> jobs;  // of rank 0, which gives them to all
+  const unsigned rank = processes.rank();
+  bool ready = processes.together([&] {
     check_digits(study);
     store.emplace(study, file);
-    if (processes.rank() == 0) account = store->load(options.force);
+    if (rank != 0) return;
+    account = store->load(options.force);
+    jobs = jobs_left(*store, options.replicas);
   });
-  if (failed != Exit::done) {
-    EnsembleOutcome none;
-    none.status = failed;
-    return none;
-  }
+  ready = ready && processes.together([&] {  // now that rank 0 has read and removed the journals of an earlier job
+    if (rank != 0 || !jobs.empty()) store->start_journal(rank, options.replicas, options.journal_bytes);
+  });
+  if (!ready) return {};
   processes.interrupt().heed();
-  if (processes.rank() != 0) return follow(*store, options, processes);
-  EnsembleOutcome end = lead(*store, options, file, processes);
+  if (rank != 0) return follow(*store, options, processes);
+  EnsembleOutcome end = lead(*store, options, file, processes, jobs);
   end.account = account;
   return end;
 }

@@ -51,6 +51,26 @@ template <class Message> Message receive(int rank, int tag) {
   MPI_Recv(&message, sizeof message / 8, MPI_UINT64_T, rank, tag, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
   return message;
 }
+
+// Records of any size, in pieces: MPI counts in int.
+constexpr std::uint64_t largest_piece = std::uint64_t{1} << 30;
+void send_record(std::string_view record) {
+  const std::uint64_t size = record.size();
+  MPI_Send(&size, 1, MPI_UINT64_T, 0, records, MPI_COMM_WORLD);
+  for (std::uint64_t at = 0; at < size; at += largest_piece)
+    MPI_Send(record.data() + at, static_cast<int>(std::min(largest_piece, size - at)), MPI_BYTE, 0, records,
+             MPI_COMM_WORLD);
+}
+std::string receive_record(int rank) {
+  std::uint64_t size = 0;
+  MPI_Recv(&size, 1, MPI_UINT64_T, rank, records, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+  std::string record(size, '\0');
+  for (std::uint64_t at = 0; at < size; at += largest_piece)
+    MPI_Recv(record.data() + at, static_cast<int>(std::min(largest_piece, size - at)), MPI_BYTE, rank, records,
+             MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+  return record;
+}
+
 // The rank that has sent a message, or -1.
 int sender(int rank, int tag) {
   int there = 0;
@@ -85,7 +105,7 @@ class MpiProcesses : public Processes {
 
   unsigned rank() const override { return static_cast<unsigned>(rank_); }
   unsigned threads() const override { return threads_; }
-  Exit together(const std::function<void()>& step) override;
+  bool together(const std::function<void()>& step) override;
   int share(const std::vector<JobRange>& jobs, const std::function<void(const NextJob&)>& work,
             const std::function<void(std::uint64_t)>& others_took) override;
   void gather(const std::function<void(const PutRecord&)>& put, const PutRecord& take) override;
@@ -93,7 +113,7 @@ class MpiProcesses : public Processes {
  private:
   void lead(WorkQueue& queue, JobQueue all, const std::function<void(std::uint64_t)>& others_took) const;
   void follow(WorkQueue& queue) const;
-  [[noreturn]] void abandon(const std::exception_ptr& error) const;
+  template <class Step> void or_abandon(Step step) const;
 
   int rank_ = 0, size_ = 1;
   unsigned threads_ = 0;
@@ -119,7 +139,7 @@ MpiProcesses::MpiProcesses(int processes_launched, Interrupt& interrupt) : Proce
   threads_ = bound ? processors() : std::max(1U, processors() / static_cast<unsigned>(ranks_here));
 }
 
-Exit MpiProcesses::together(const std::function<void()>& step) {
+bool MpiProcesses::together(const std::function<void()>& step) {
   std::exception_ptr error;
   try {
     step();
@@ -129,35 +149,36 @@ Exit MpiProcesses::together(const std::function<void()>& step) {
   const int mine = error ? rank_ : size_;
   int first = size_;
   MPI_Allreduce(&mine, &first, 1, MPI_INT, MPI_MIN, MPI_COMM_WORLD);
-  if (first == size_) return Exit::done;
+  if (first == size_) return true;
   ignore_signals();  // launchers send all ranks a signal as soon as the first of them has ended
-  std::string message;
-  int status = rank_ == first ? status_of(error, message) : 0;
-  MPI_Bcast(&status, 1, MPI_INT, first, MPI_COMM_WORLD);
   if (rank_ == first) std::rethrow_exception(error);
-  return static_cast<Exit>(status);
+  return false;
 }
 
-// Ends the job from one rank. The launcher ends the other ranks; their replicas are in their journals.
-void MpiProcesses::abandon(const std::exception_ptr& error) const {
-  std::string message;
-  const int status = status_of(error, message);
-  fmt::print(stderr, "cradle: rank {}: {}\n", rank_, message);
-  std::fflush(stderr);
-  std::this_thread::sleep_for(500ms);  // else Open MPI 5 may discard the message
-  MPI_Abort(MPI_COMM_WORLD, status);
-  std::abort();
+// Ends the job if a step of one rank throws: other ranks, which may wait for it, are ended by the launcher. Their
+// replicas are in their journals.
+template <class Step> void MpiProcesses::or_abandon(Step step) const {
+  try {
+    step();
+  } catch (...) {
+    std::string message;
+    const int status = status_of(std::current_exception(), message);
+    fmt::print(stderr, "cradle: rank {}: {}\n", rank_, message);
+    std::fflush(stderr);
+    std::this_thread::sleep_for(500ms);  // else Open MPI 5 may discard the message
+    MPI_Abort(MPI_COMM_WORLD, status);
+  }
 }
 
 int MpiProcesses::share(const std::vector<JobRange>& jobs, const std::function<void(const NextJob&)>& work,
                         const std::function<void(std::uint64_t)>& others_took) {
-  {
+  or_abandon([&] {
     WorkQueue queue(work, interrupt());
     if (rank_ == 0)
       lead(queue, JobQueue(jobs), others_took);
     else
       follow(queue);
-  }
+  });
   // Some ranks may have finished before a signal came: all return what rank 0 returns, which waits for all.
   int signal = interrupt().signal();
   MPI_Request request = MPI_REQUEST_NULL;
@@ -181,7 +202,6 @@ void MpiProcesses::lead(WorkQueue& queue, JobQueue all, const std::function<void
   const auto stop = [this] { return Reply{Order::stop, 0, 0, 0, static_cast<std::uint64_t>(interrupt().signal())}; };
   for (bool closed = false;;) {
     const bool idle = queue.idle(!closed);
-    if (idle && queue.error()) abandon(queue.error());
     if (!closed && queue.empty()) {
       const auto own = piece();
       own ? queue.put(*own) : queue.close();
@@ -214,7 +234,6 @@ void MpiProcesses::follow(WorkQueue& queue) const {
   auto last = std::chrono::steady_clock::now();
   for (bool idle = false; !idle;) {
     idle = queue.idle(!requested && !closed);
-    if (idle && queue.error()) abandon(queue.error());
     Report report{queue.taken() - reported};
     if (idle)
       report.wish = Wish::leave;
@@ -245,29 +264,15 @@ void MpiProcesses::follow(WorkQueue& queue) const {
 }
 
 void MpiProcesses::gather(const std::function<void(const PutRecord&)>& put, const PutRecord& take) {
-  constexpr std::uint64_t end = ~std::uint64_t{0}, piece = std::uint64_t{1} << 30;  // MPI counts in int
-  if (rank_ != 0) {
-    put([&](std::string_view record) {
-      const std::uint64_t size = record.size();
-      MPI_Send(&size, 1, MPI_UINT64_T, 0, records, MPI_COMM_WORLD);
-      for (; !record.empty(); record.remove_prefix(std::min<std::size_t>(piece, record.size())))
-        MPI_Send(record.data(), static_cast<int>(std::min<std::size_t>(piece, record.size())), MPI_BYTE, 0, records,
-                 MPI_COMM_WORLD);
-    });
-    MPI_Send(&end, 1, MPI_UINT64_T, 0, records, MPI_COMM_WORLD);
-    return;
-  }
-  for (int rank = 1; rank < size_; ++rank)
-    for (;;) {
-      std::uint64_t size = 0;
-      MPI_Recv(&size, 1, MPI_UINT64_T, rank, records, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
-      if (size == end) break;
-      std::string record(size, '\0');
-      for (std::uint64_t at = 0; at < size; at += piece)
-        MPI_Recv(record.data() + at, static_cast<int>(std::min(piece, size - at)), MPI_BYTE, rank, records,
-                 MPI_COMM_WORLD, MPI_STATUS_IGNORE);
-      take(record);
+  or_abandon([&] {
+    if (rank_ != 0) {
+      put(send_record);
+      send_record({});  // the end
+    } else {
+      for (int rank = 1; rank < size_; ++rank)
+        for (std::string record = receive_record(rank); !record.empty(); record = receive_record(rank)) take(record);
     }
+  });
 }
 
 }  // namespace

@@ -55,9 +55,9 @@ std::uint64_t JobQueue::left() const {
   return sum;
 }
 
-Exit OneProcess::together(const std::function<void()>& step) {
+bool OneProcess::together(const std::function<void()>& step) {
   step();
-  return Exit::done;
+  return true;
 }
 
 int OneProcess::share(const std::vector<JobRange>& jobs, const std::function<void(const NextJob&)>& work,

@@ -42,9 +42,10 @@ class Processes {
   /// The default number of threads of each rank.
   virtual unsigned threads() const = 0;
 
-  /// Runs a step on every rank. If it throws on some ranks, the first of these rethrows and the others return its
-  /// status: one message, one status for all.
-  virtual Exit together(const std::function<void()>& step) = 0;
+  /// Runs a step on every rank; true if it succeeded on all. If it throws on some ranks, the first of these rethrows
+  /// and all others return false. These then have to end with status 0: launchers may discard what a rank still prints
+  /// when another one fails.
+  virtual bool together(const std::function<void()>& step) = 0;
 
   /// Calls work(next) on every rank until rank 0's jobs are done. Each job is given to one rank only. Rank 0 calls
   /// `others_took` when other ranks take replicas. Returns the signal that ended it early, on any rank, or 0.
@@ -79,7 +80,7 @@ class OneProcess : public Processes {
   using Processes::Processes;
   unsigned rank() const override { return 0; }
   unsigned threads() const override { return processors(); }
-  Exit together(const std::function<void()>& step) override;
+  bool together(const std::function<void()>& step) override;
   int share(const std::vector<JobRange>& jobs, const std::function<void(const NextJob&)>& work,
             const std::function<void(std::uint64_t)>& others_took) override;
   void gather(const std::function<void(const PutRecord&)>&, const PutRecord&) override {}

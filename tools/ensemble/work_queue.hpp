@@ -20,7 +20,10 @@ class WorkQueue {
   /// Begins work(next) at once. `put` adds jobs until it is closed. An interrupt ends the work early.
   WorkQueue(const std::function<void(const NextJob&)>& work, const Interrupt& interrupt)
       : interrupt_(interrupt), thread_([this, work] { run(work); }) {}
-  ~WorkQueue() { thread_.join(); }
+  ~WorkQueue() {
+    close();
+    thread_.join();
+  }
   WorkQueue(const WorkQueue&) = delete;
   WorkQueue& operator=(const WorkQueue&) = delete;
 
@@ -45,23 +48,25 @@ class WorkQueue {
     return taken_;
   }
 
-  /// True when the work has returned. Waits a moment for that or, if requested, until the last job is taken.
+  /// True when the work has returned; throws what the work threw. Waits a moment for that or, if requested, until the
+  /// last job is taken.
   bool idle(bool or_empty) {
     std::unique_lock lock(mutex_);
     changed_.wait_for(lock, std::chrono::milliseconds(1), [&] { return idle_ || (or_empty && jobs_.left() == 0); });
+    if (error_) std::rethrow_exception(error_);
     return idle_;
   }
-  /// What the work threw, if anything; call it when idle.
-  const std::exception_ptr& error() const { return error_; }
 
  private:
   void run(const std::function<void(const NextJob&)>& work) {
+    std::exception_ptr error;
     try {
       work([this] { return next(); });
     } catch (...) {
-      error_ = std::current_exception();
+      error = std::current_exception();
     }
     const std::scoped_lock lock(mutex_);
+    error_ = error;
     idle_ = true;
     changed_.notify_all();
   }

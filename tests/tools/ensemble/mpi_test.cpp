@@ -126,10 +126,12 @@ TEST_F(Mpi, WhatIsWrongIsReportedOnce) {
   shell(job(2, "ensemble wet.toml --replicas 5 --seed 9 -o other.h5"), 2);
 }
 
-TEST_F(Mpi, RankThatCannotWriteItsJournalEndsTheJob) {
-  shell("mkdir -p bad.h5.part.1/in.the.way", 0);
-  const Printed bad = shell(job(2, "ensemble wet.toml --replicas 3000 -o bad.h5"), 4);
-  EXPECT_TRUE(has(bad.err, "cradle: "));
+TEST_F(Mpi, RankThatCannotReadOrWriteItsJournalEndsTheJob) {
+  shell("mkdir -p bad.h5.part.1/in.the.way; ln -s nowhere/journal other.h5.part", 0);
+  for (const std::string file : {"bad.h5", "other.h5"}) {
+    const Printed bad = shell("timeout 60 env " + job(2, "ensemble wet.toml --replicas 3000 -o " + file), 4);
+    EXPECT_TRUE(has(bad.err, "cradle: " + file)) << bad.err;
+  }
 }
 
 }  // namespace cradle::tests::mpi_test

@@ -32,7 +32,6 @@
 #include "cradle/core/base/state.hpp"
 #include "cradle/core/chains/collision_result.hpp"
 #include "cradle/core/chains/gap_ends.hpp"
-#include "cradle/core/chains/gravity.hpp"
 #include "cradle/core/laws/one_of.hpp"
 
 namespace cradle {
@@ -62,9 +61,9 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain : public Gap
   // Moves the origin of time to the given local time and returns its new local time. Gaps do not change.
   T move_origin(const T& local) {
     if constexpr (Line::watched)
-      if (!field_.shaken())
-        line_.with_motion(field_,
-                          [&](const auto& motion) { line_.certainty.begin_anew(line_.gaps, motion, first(), last()); });
+      if (!wall_gaps_.shaken())
+        wall_gaps_.with_motion(
+            line_, [&](const auto& motion) { line_.certainty.begin_anew(line_.gaps, motion, first(), last()); });
     find_lost_digits(local);
     line_.gaps.move_origin(local, [this](auto&& each) {
       for (Slot s = first(); s <= last(); ++s) each(s, closing(s));
@@ -83,7 +82,7 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain : public Gap
   }
 
   static auto state(auto& self) {
-    return std::tie(self.line_, self.range_, self.memory_, self.left_, self.right_, self.walls_, self.field_);
+    return std::tie(self.line_, self.range_, self.memory_, self.left_, self.right_, self.walls_, self.wall_gaps_);
   }
 
   // Checks what was loaded: whether its parts fit together and its numbers are some that gaps can have.
@@ -109,9 +108,10 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain : public Gap
     }
     for (const Slot s : {first() - 1, last() + 1}) require_state(is_finite(closing(s)), "gaps");
     if (falls()) {
-      const auto pile = static_cast<std::size_t>(field_.resting()), held = last() + 1 - first();
-      require_state(pile < held || (pile == held && !field_.pulls(particle(slot_in_pile(field_.resting())))), "pile");
-      for (ParticleIndex h = 0; h < field_.resting(); ++h)
+      const auto pile = static_cast<std::size_t>(wall_gaps_.resting()), held = last() + 1 - first();
+      require_state(pile < held || (pile == held && !wall_gaps_.pulls(particle(slot_in_pile(wall_gaps_.resting())))),
+                    "pile");
+      for (ParticleIndex h = 0; h < wall_gaps_.resting(); ++h)
         require_state(line_.gaps[slot_in_pile(h)].gap == T(0) && closing(slot_in_pile(h)) == T(0), "pile");
     }
     require_state(line_.has_mass(last() + 1, *particles_), "masses");
@@ -121,7 +121,7 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain : public Gap
 
  private:
   using Ends::find_inner, Ends::is_inner, Ends::foresee_walls, Ends::widen, Ends::enter_carried, Ends::find_lost_digits;
-  using Ends::line_, Ends::range_, Ends::particles_, Ends::memory_, Ends::walls_, Ends::field_, Ends::left_;
+  using Ends::line_, Ends::range_, Ends::particles_, Ends::memory_, Ends::walls_, Ends::wall_gaps_, Ends::left_;
   using Ends::right_, Ends::centre_, Ends::fastest_, Ends::slot_in_pile, Ends::flight, Ends::lay_out;
 
   GapChain(std::shared_ptr<const Particles<T>> particles, const T& start, GapRange held)
@@ -131,7 +131,7 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain : public Gap
     foresee_walls();
     if constexpr (Line::watched)
       for (Slot s = first(); s <= last(); ++s)
-        if (field_.pulls(particle(s))) line_.watch_meeting(field_, s, T(0));
+        if (wall_gaps_.pulls(particle(s))) wall_gaps_.watch_meeting(line_, s, T(0));
     left_.take(particle(first()));
     right_.take(particle(last()) + 1);
     for (Slot s = first(); s <= last(); ++s) fastest_ = std::max(fastest_, magnitude(closing(s)));
@@ -151,7 +151,7 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain : public Gap
       else
         return true;
     };
-    if (field_.pulls(particle(s)))  // it may be due while it opens
+    if (wall_gaps_.pulls(particle(s)))  // it may be due while it opens
       return is_finite(gap.gap) && is_finite(gap.time) && is_finite(gap.closing) && has_due();
     return gap.fits(gap.closing);
   }
@@ -179,16 +179,17 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain : public Gap
       rested =
           memory_.rested({left(s), s, right(s)}, s, time, law.contact_time(), local_time(clock().start()), slots());
     if (falls()) {
-      const ParticleIndex wall = walls_.beside(particle(s)) ? particle(s) : field_.wall_of_pile();
+      const ParticleIndex wall = walls_.beside(particle(s)) ? particle(s) : wall_gaps_.wall_of_pile();
       const T w = closing_when_due(s), &mass = line_.masses[walls_.left_of(wall) ? s + 1 : s];
       const Pair<T> elapsed = clock().since_start(time);
       if constexpr (Line::watched) {
-        watch_threshold(s, time, w, field_.rest_speed(particle(s)));
+        watch_threshold(s, time, w, wall_gaps_.rest_speed(particle(s)));
         if constexpr (requires { law.cutoff(); }) watch_threshold(s, time, w, law.cutoff());
       }
-      const bool stays = field_.holds(particle(s), w, elapsed), elastic = !stays && (!rested || below_cutoff(law, w));
+      const bool stays = wall_gaps_.holds(particle(s), w, elapsed),
+                 elastic = !stays && (!rested || below_cutoff(law, w));
       const T restitution = stays ? T(0) : elastic ? T(1) : walls_.wall(wall).restitution;
-      Outcome<T> outcome = walls_.strike(wall, w, mass, restitution, field_.shaken_at(wall, elapsed));
+      Outcome<T> outcome = walls_.strike(wall, w, mass, restitution, wall_gaps_.shaken_at(wall, elapsed));
       outcome.below_cutoff = elastic && walls_.wall(wall).reflects();
       return outcome;
     }
@@ -196,7 +197,7 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain : public Gap
   }
   // Whether rounding decides if a collision at the speed w is slower than a speed.
   void watch_threshold(Slot s, const T& time, const T& w, const T& speed) requires(Line::watched) {
-    line_.with_motion(field_, [&](const auto& motion) {
+    wall_gaps_.with_motion(line_, [&](const auto& motion) {
       line_.certainty.threshold(line_.gaps, motion, s, particle(s), time, w, speed);
     });
   }
@@ -212,29 +213,30 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain : public Gap
   // `collide_at_end` under gravity or between shaken walls; also for collisions beside the gap to a wall, and at a
   // pile.
   template <class Law> CollisionResult<T> collide_falling(const Law& law, Slot s, const T& time) {
-    const ParticleIndex resting = field_.resting(), height = field_.piles() ? field_.height(particle(s)) : 0;
-    const bool beside_pile = field_.piles() && height <= resting + 1;
+    const ParticleIndex resting = wall_gaps_.resting(),
+                        height = wall_gaps_.piles() ? wall_gaps_.height(particle(s)) : 0;
+    const bool beside_pile = wall_gaps_.piles() && height <= resting + 1;
     bool let_go = false;
     if (beside_pile && resting > 0) {
-      const std::optional<T> at = line_.pile_let_go(field_, s);
+      const std::optional<T> at = wall_gaps_.pile_let_go(line_, s);
       let_go = height < resting || (at && *at < time);
     }
     const bool on_pile = !let_go && beside_pile && resting > 0 && height == resting && stays(s, time);
     const bool at_wall = walls_.beside(particle(s)) || on_pile;
     const Outcome<T> of_law = at_wall ? outcome_at_wall(law, s, time) : outcome(law, s, time, closing_when_due(s));
     const bool on_wall = beside_pile && height == 0 && of_law.closing == T(0) &&  // slow, or of a restitution 0
-                         field_.wall_presses(clock().since_start(time));
+                         wall_gaps_.wall_presses(clock().since_start(time));
     const ParticleIndex after = let_go                                            ? ParticleIndex{on_wall}
                                 : on_pile || on_wall                              ? resting + 1
                                 : beside_pile && height == resting && resting > 0 ? resting - 1
                                                                                   : resting;
     for (const Slot beside : {s - 1, s, s + 1})
-      if (field_.at_wall(particle(beside)) && !(on_pile && resting == 1)) enter_carried(beside, time);
+      if (wall_gaps_.at_wall(particle(beside)) && !(on_pile && resting == 1)) enter_carried(beside, time);
     if (let_go)
       for (ParticleIndex h = height > 1 ? 0 : 1; h < resting; ++h) enter_carried(slot_in_pile(h), time);
     else if (after < resting && resting > 1)
       enter_carried(slot_in_pile(resting - 1), time);
-    const End far = field_.pile_end() == End::left ? End::right : End::left;
+    const End far = wall_gaps_.pile_end() == End::left ? End::right : End::left;
     if (resting == particles_->count() && after < resting &&
         !walls_.has(far)) {  // the flight of the last one is its own again
       Anchor<T>& last_one = far == End::left ? left_ : right_;
@@ -247,11 +249,11 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain : public Gap
       Notice more = Notice::none;
       if (let_go)
         for (const ParticleIndex h : {resting, ParticleIndex{0}})
-          if ((h + 1 < height || h > height + 1) && field_.pulls(particle(slot_in_pile(h))))
-            more |= line_.renew(field_, slot_in_pile(h), time) | Notice::origin_must_move;  // which predicts them
+          if ((h + 1 < height || h > height + 1) && wall_gaps_.pulls(particle(slot_in_pile(h))))
+            more |= wall_gaps_.renew(line_, slot_in_pile(h), time) | Notice::origin_must_move;  // which predicts them
       return more;
     };
-    CollisionResult<T> made = line_.strike(field_, s - 1, s, s + 1, time, of_law, notice, after, renew);
+    CollisionResult<T> made = wall_gaps_.strike(line_, s - 1, s, s + 1, time, of_law, notice, after, renew);
     if (const auto back = rebound(s); back && back->height < line_.gaps.floor()) made.notice |= Notice::gap_below_floor;
     find_inner();
     return made;
@@ -259,7 +261,7 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain : public Gap
 
   // Whether the next particle at the wall or the pile there comes to rest on it.
   bool stays(Slot s, const T& time) const {
-    return field_.holds(particle(s), closing_when_due(s), clock().since_start(time));
+    return wall_gaps_.holds(particle(s), closing_when_due(s), clock().since_start(time));
   }
 };
 

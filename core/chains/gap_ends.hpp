@@ -58,15 +58,15 @@ template <Real T, class Masses> class GapEnds : public GapPlaces<T, Masses> {
       const WallImpulse more = carried(s, time);
       all.carry(more.end, more.energy, more.momentum);
     };
-    if (field_.at_wall(particle(first()))) carry(first());
-    if (first() < last() && field_.at_wall(particle(last()))) carry(last());
-    for (ParticleIndex h = 1; h < field_.resting(); ++h) carry(slot_in_pile(h));
+    if (wall_gaps_.at_wall(particle(first()))) carry(first());
+    if (first() < last() && wall_gaps_.at_wall(particle(last()))) carry(last());
+    for (ParticleIndex h = 1; h < wall_gaps_.resting(); ++h) carry(slot_in_pile(h));
     return all;
   }
 
  protected:
-  using Places::field_, Places::left_, Places::right_, Places::flight, Places::slot_in_pile;
   using Places::Places, Places::line_, Places::range_, Places::particles_, Places::memory_, Places::walls_;
+  using Places::wall_gaps_, Places::left_, Places::right_, Places::flight, Places::slot_in_pile;
 
   // Changes to enough slots for the zone to grow by half on either side, with the gaps at `kept`.
   void lay_out(const std::vector<Slot>& kept, ParticleIndex held) {
@@ -84,8 +84,8 @@ template <Real T, class Masses> class GapEnds : public GapPlaces<T, Masses> {
   void find_inner() {
     inner_ = {range_.front_left(), range_.front_right()};
     if (!falls()) return;
-    const auto pile = static_cast<Slot>(field_.resting());
-    const bool left = field_.pile_end() == End::left;
+    const auto pile = static_cast<Slot>(wall_gaps_.resting());
+    const bool left = wall_gaps_.pile_end() == End::left;
     const Slot margin = left ? 1 : 1 + pile;
     inner_ = {inner_.after + (left ? 1 + pile : 1), inner_.before > margin ? inner_.before - margin : 0};
   }
@@ -104,10 +104,10 @@ template <Real T, class Masses> class GapEnds : public GapPlaces<T, Masses> {
   // Predicts the next collisions with walls under gravity, where all others have just been.
   void foresee_walls() {
     for (const Slot s : {first(), last()})
-      if (field_.at_wall(particle(s))) line_.foresee(field_, s);
-    if (field_.resting() > 0)
-      if (const Slot above = slot_in_pile(field_.resting()); field_.above_pile(particle(above)))
-        line_.foresee(field_, above);
+      if (wall_gaps_.at_wall(particle(s))) wall_gaps_.foresee(line_, s);
+    if (wall_gaps_.resting() > 0)
+      if (const Slot above = slot_in_pile(wall_gaps_.resting()); wall_gaps_.above_pile(particle(above)))
+        wall_gaps_.foresee(line_, above);
   }
 
   // Enters in the accounts what a wall has given until now (see `carried`).
@@ -156,19 +156,19 @@ template <Real T, class Masses> class GapEnds : public GapPlaces<T, Masses> {
     T energy{0}, momentum{0};
   };
   WallImpulse carried(Slot s, const T& time) const {
-    const End end = field_.piles() ? field_.pile_end() : walls_.left_of(particle(s)) ? End::left : End::right;
+    const End end = wall_gaps_.piles() ? wall_gaps_.pile_end() : walls_.left_of(particle(s)) ? End::left : End::right;
     if (s < first() || s > last() || !(line_.gaps[s].gap == T(0) && closing(s) == T(0))) return {end};
     const Pair<T> since = line_.gaps.since_start(s);
     T rested(0);
-    if (field_.at_wall(particle(s))) {
-      rested = line_.approach(field_, s).rested(line_.gaps.flown(s, time), clock().since_start(time));
+    if (wall_gaps_.at_wall(particle(s))) {
+      rested = wall_gaps_.approach(line_, s).rested(line_.gaps.flown(s, time), clock().since_start(time));
     } else {
-      const std::optional<T> let_go = line_.pile_let_go(field_, s);
+      const std::optional<T> let_go = wall_gaps_.pile_let_go(line_, s);
       rested = line_.gaps.flown(s, let_go && *let_go < time ? *let_go : time);
     }
     if (!is_positive(rested)) return {end};
     const ParticleIndex wall = end == End::left ? -1 : count();
-    const T mass = line_.masses[end == End::left ? s + 1 : s], a = field_.acceleration();
+    const T mass = line_.masses[end == End::left ? s + 1 : s], a = wall_gaps_.acceleration();
     const Flight<T> from = at_wall(*particles_, wall, since), to = at_wall(*particles_, wall, since + rested);
     const T gained = difference(to.v, from.v);
     const WallMotion<T>* motion = particles_->wall(end)->motion.get();

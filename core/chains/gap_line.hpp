@@ -11,7 +11,6 @@
 
 #include "cradle/core/chains/certainty.hpp"
 #include "cradle/core/chains/collision_result.hpp"
-#include "cradle/core/chains/gravity.hpp"
 #include "cradle/core/chains/masses.hpp"
 #include "cradle/core/chains/timed_gaps.hpp"
 #include "cradle/core/chains/watched_gap.hpp"
@@ -115,110 +114,19 @@ template <Real T, class MassesOf> class GapLine {
       return {since, T(gaps[s].gap - gaps[s].closing * since), gaps[s].closing};
     }
   };
-  // How gaps move where some of them are pulled.
-  struct Curved {
-    static constexpr bool curved = true;
-    const GapLine& line;
-    const Gravity<T>& field;
-    GapMotion<T> operator()(Slot s, const T& time) const {
-      if (!field.pulls(line.particle(s))) return Straight{line.gaps}(s, time);
-      const WallApproach<T> open = line.approach(field, s);
-      const T since = line.gaps.flown(s, time);
-      const Pair<T> now = line.gaps.clock().since_start(time);
-      return {since, open.gap_after(since, now), open.closing_after(since, now), open.acceleration_after(since, now)};
-    }
-    GapMotion<T> at_local_time(Slot s) const {
-      const auto& own = line.gaps[s];
-      if (!field.pulls(line.particle(s))) return {T(0), own.gap, own.closing};
-      return {T(0), own.gap, own.closing, line.approach(field, s).acceleration_after(T(0), line.gaps.since_start(s))};
-    }
-  };
-  // Calls f with the motion of gaps where the field may pull some, or not.
-  template <class F> decltype(auto) with_motion(const Gravity<T>& field, F f) const {
-    return field.anywhere() ? f(Curved{*this, field}) : f(Straight{gaps});
-  }
 
-  // ---- under gravity, or to shaken walls: the gaps to walls, and that above a pile
-  WallApproach<T> approach(const Gravity<T>& field, Slot s) const {
-    return approach(field, s, gaps[s].gap, closing(s));
-  }
-  // The approach that the gap would have with this size and this closing speed.
-  WallApproach<T> approach(const Gravity<T>& field, Slot s, const T& gap, const T& closing) const {
-    if (field.above_pile(particle(s))) {
-      const std::optional<T> free = pile_let_go(field, s);
-      return field.approach_pile(gap, closing, gaps.since_start(s),
-                                 free ? std::optional<T>(gaps.flown(s, *free)) : std::nullopt);
-    }
-    return field.approach(particle(s), gap, closing, gaps.since_start(s));
-  }
-  // The local time at which the wall lets go of a pile, which has the gap s above it or in it; nothing: never.
-  std::optional<T> pile_let_go(const Gravity<T>& field, Slot s) const {
-    const auto height = static_cast<Slot>(field.height(particle(s)));
-    const Slot at_wall = field.pile_end() == End::left ? s - height : s + height;
-    const std::optional<T> wait = approach(field, at_wall).let_go_in();
-    return wait ? std::optional<T>(gaps.after(at_wall, *wait)) : std::nullopt;
-  }
-  T gap_at(const Gravity<T>& field, Slot s, const T& time) const {
-    return approach(field, s).gap_after(gaps.flown(s, time), gaps.clock().since_start(time));
-  }
-  T closing_at(const Gravity<T>& field, Slot s, const T& time) const {
-    return approach(field, s).closing_after(gaps.flown(s, time), gaps.clock().since_start(time));
-  }
-  // The next collision there, a local time; nothing if there is none.
-  std::optional<T> due(const Gravity<T>& field, Slot s) const {
-    const std::optional<T> wait = approach(field, s).meeting_in();
-    return wait ? std::optional<T>(gaps.after(s, *wait)) : std::nullopt;
-  }
-  double queue_due(const Gravity<T>& field, Slot s) const {
-    const std::optional<T> time = due(field, s);
-    return time ? gaps.queue_time(*time) : EventQueue::never;
-  }
-  // The same, and enters it where keys are stored.
-  double foresee(const Gravity<T>& field, Slot s) {
-    const double time = queue_due(field, s);
-    if constexpr (Gaps::keys_are_exact) gaps[s].due = time;
-    return time;
-  }
-  // The effect of a collision at a wall or beside the gap to one, off the hot path. `resting` particles are in the pile
-  // after it; one that comes to rest on others does not move them. `renew` is called while the pile is as it was.
-  template <class Renew>
-  CollisionResult<T> strike(Gravity<T>& field, Slot p, Slot s, Slot n, const T& time, const Outcome<T>& outcome,
-                            Notice notice, ParticleIndex resting, const Renew& renew) {
-    const T since = gaps.flown(s, time);
-    notice |= of_flight(gaps.queue_time(since), gaps.queue_time(time));
-    const bool at_wall = field.at_wall(particle(s)), lands = resting > field.resting() && field.resting() > 0;
-    const bool to_left = !lands || field.pile_end() == End::right, to_right = !lands || field.pile_end() == End::left;
-    if constexpr (watched) {
-      const T w = field.pulls(particle(s)) ? approach(field, s).meeting_speed().value_or(closing(s)) : closing(s);
-      certainty.collision(gaps, Curved{*this, field}, p, s, n, particle(s), time, w, outcome, masses.of_pair(s), exact_,
-                          {to_left, to_right});
-    }
-    if (to_left) notice |= kick(field, p, outcome.to_left, since, time);
-    if (to_right) notice |= kick(field, n, outcome.to_right, since, time);
-    notice |= renew();
-    gaps.close(s, outcome.closing, since, time);
-    gaps[s].closing = outcome.closing;
-    gaps.forget(s);
-    field.rest(resting);
-    if (at_wall && is_negative(since)) {  // late: it has fallen since then
-      const WallApproach<T> open = field.approach(particle(s), T(0), outcome.closing, gaps.clock().since_start(time));
-      gaps[s].gap = open.gap_after(T(-since), gaps.since_start(s));
-      gaps[s].closing = open.closing_after(T(-since), gaps.since_start(s));
-    }
-    const auto predict = [&](Slot beside) {
-      if (!field.pulls(particle(beside))) return gaps.predict(beside, closing(beside));
-      if constexpr (watched) watch_meeting(field, beside, time);
-      return foresee(field, beside);
-    };
+  // Updates a gap and adds to its closing speed; `struck` is the time since the local time of the neighbouring gap that
+  // had the collision.
+  template <class Gain> [[gnu::always_inline]] Notice kick(Slot s, const Gain& gain, const T& struck, const T& time) {
+    const T since = gaps.kick(
+        s, closing(s), [&]() -> const T& { return high(gain); }, time);
     if constexpr (watched)
-      if (at_wall) watch_meeting(field, s, time);
-    return {outcome, predict(p), at_wall ? foresee(field, s) : EventQueue::never, predict(n), notice, p, n};
-  }
-
-  // Brings a gap that is pulled to a time at which nothing happens to it.
-  Notice renew(const Gravity<T>& field, Slot s, const T& time) {
-    if constexpr (watched) certainty.renew(gaps, Curved{*this, field}, s, time);
-    return kick(field, s, T(0), T(0), time);
+      add(s, gain);
+    else
+      gaps[s].closing += gain;
+    if (gaps.below_floor(s)) [[unlikely]]
+      return gaps.note(s, closing(s), high(gain), since, struck, particle(s), time);
+    return Notice::none;
   }
 
   // There is no gap beyond the last particle: its slot holds a gap that always opens, whatever the collisions give it.
@@ -248,19 +156,6 @@ template <Real T, class MassesOf> class GapLine {
     }
   }
 
-  // Whether rounding decides that a pulled gap meets its wall, or at which of two times. A floor at rest is always met.
-  void watch_meeting(const Gravity<T>& field, Slot s, const T& time) {
-    if (!field.may_miss(particle(s))) return;
-    struct Meeting {
-      T in, speed;
-    };
-    certainty.meeting(gaps, s, particle(s), time, [&](const T& less, const T& faster) -> std::optional<Meeting> {
-      const WallApproach<T> open = approach(field, s, T(gaps[s].gap - less), T(closing(s) + faster));
-      const std::optional<T> in = open.meeting_in();
-      return in ? std::optional<Meeting>({*in, open.meeting_speed().value_or(T(0))}) : std::nullopt;
-    });
-  }
-
  private:
   using Cell = std::remove_cvref_t<decltype(std::declval<Gaps&>()[Slot{}])>;
   static Cell cell(const T& gap, const T& time, const T& closing) {
@@ -285,41 +180,6 @@ template <Real T, class MassesOf> class GapLine {
   T mass_of(Slot s, const Particles<T>& particles) const {
     return particles.mass(particle(s) >= 0 && particle(s) < particles.count() ? particle(s) : 0);
   }
-  // Updates a gap and adds to its closing speed; `struck` is the time since the local time of the neighbouring gap that
-  // had the collision.
-  template <class Gain> [[gnu::always_inline]] Notice kick(Slot s, const Gain& gain, const T& struck, const T& time) {
-    const T since = gaps.kick(
-        s, closing(s), [&]() -> const T& { return high(gain); }, time);
-    if constexpr (watched)
-      add(s, gain);
-    else
-      gaps[s].closing += gain;
-    if (gaps.below_floor(s)) [[unlikely]]
-      return gaps.note(s, closing(s), high(gain), since, struck, particle(s), time);
-    return Notice::none;
-  }
-
-  // `kick` under gravity, or between shaken walls.
-  Notice kick(const Gravity<T>& field, Slot s, const T& gain, const T& struck, const T& time) {
-    if (!field.pulls(particle(s))) {
-      if constexpr (watched)
-        return kick(s, Pair<T>{gain, T(0)}, struck, time);
-      else
-        return kick(s, gain, struck, time);
-    }
-    const T flown = gaps.flown(s, time);
-    const WallApproach<T> open = approach(field, s);
-    const Pair<T> at = gaps.clock().since_start(time);
-    const bool late = is_negative(flown);
-    const T mean = late ? closing(s) : open.mean_closing(flown, at),
-            now = late ? closing(s) : open.closing_after(flown, at);
-    const T since = gaps.kick(
-        s, mean, [&]() -> const T& { return gain; }, time);
-    gaps[s].closing = now + gain;
-    if (gaps.below_floor(s)) return gaps.note(s, T(mean + gain), gain, since, struck, particle(s), time);
-    return Notice::none;
-  }
-
   bool exact_;
 };
 

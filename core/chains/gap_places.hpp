@@ -38,7 +38,7 @@ template <Real T, class Masses> class GapPlaces : public HeldGaps<T, Masses> {
     T largest = magnitude(T(kinetic_energy(T(time + off_by(time))) - energy));
     for (std::size_t sample = 0; sample < 2; ++sample) {
       const T off = kinetic_energy(time, [&](Slot s) {
-        return line_.with_motion(field_, [&](const auto& motion) {
+        return wall_gaps_.with_motion(line_, [&](const auto& motion) {
           return T(closing_at(s, time) + line_.certainty.closing_off(line_.gaps, motion, s, time, sample));
         });
       });
@@ -72,12 +72,14 @@ template <Real T, class Masses> class GapPlaces : public HeldGaps<T, Masses> {
   }
 
  protected:
-  using Held::Held, Held::line_, Held::range_, Held::particles_, Held::walls_, Held::field_, Held::left_, Held::right_;
+  using Held::Held, Held::line_, Held::range_, Held::particles_, Held::walls_, Held::wall_gaps_, Held::left_,
+      Held::right_;
   using Held::slot, Held::front_particle, Held::centre_, Held::fastest_;
 
   Flight<T> flight(const Anchor<T>& anchor, const T& time) const {
     if (falls() &&
-        (field_.resting() == particles_->count() || (particles_->count() == 1 && particles_->holding() != nullptr)) &&
+        (wall_gaps_.resting() == particles_->count() ||
+         (particles_->count() == 1 && particles_->holding() != nullptr)) &&
         particles_->wall_at(anchor.particle()) == nullptr)
       return from_wall(time);
     return anchor.flight(*particles_, clock(), time);
@@ -112,7 +114,7 @@ template <Real T, class Masses> class GapPlaces : public HeldGaps<T, Masses> {
   template <class Closing> T kinetic_energy(const T& time, const Closing& speed_of) const {
     const T total = particles_->total_mass();
     T drift = particles_->conserved_momentum() / total;
-    if (falls()) drift += field_.acceleration() * clock().elapsed(time);
+    if (falls()) drift += wall_gaps_.acceleration() * clock().elapsed(time);
     const ParticleIndex count = particles_->count();
     const bool from_wall = particle(first()) < 0, to_wall = !on_ring() && particle(last()) + 1 == count;
     const T left = from_wall ? T(0) : particles_->mass_between(0, particle(first()) + 1);
@@ -156,8 +158,8 @@ template <Real T, class Masses> class GapPlaces : public HeldGaps<T, Masses> {
     const bool may_be_pulled = Line::watched && falls();
     if (!may_be_pulled && speed == T(0) && !(epsilon * slow < gap)) return false;  // they touch, at rest
     if constexpr (Line::watched)
-      return line_.with_motion(
-          field_, [&](const auto& motion) { return line_.certainty.open(line_.gaps, motion, s, time, off_by(time)); });
+      return wall_gaps_.with_motion(
+          line_, [&](const auto& motion) { return line_.certainty.open(line_.gaps, motion, s, time, off_by(time)); });
     else
       return gap < T(certain_by) * (magnitude(speed) * off_by(time) + slow);
   }

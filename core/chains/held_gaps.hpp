@@ -10,8 +10,8 @@
 #include "cradle/core/chains/anchor.hpp"
 #include "cradle/core/chains/collision_memory.hpp"
 #include "cradle/core/chains/gap_line.hpp"
-#include "cradle/core/chains/gravity.hpp"
 #include "cradle/core/chains/held_range.hpp"
+#include "cradle/core/chains/wall_gaps.hpp"
 #include "cradle/core/queue/account.hpp"
 
 namespace cradle {
@@ -47,24 +47,24 @@ template <Real T, class Masses> class HeldGaps {
   // Local time of the next collision of a gap that is closing.
   T due(Slot s) const {
     if constexpr (!keys_are_exact)
-      if (field_.pulls(particle(s))) return line_.due(field_, s).value_or(far_away<T>());
+      if (wall_gaps_.pulls(particle(s))) return wall_gaps_.due(line_, s).value_or(far_away<T>());
     return line_.due(s);
   }
   double queue_due(Slot s) const {
     if constexpr (!keys_are_exact)
-      if (field_.pulls(particle(s))) return line_.queue_due(field_, s);
+      if (wall_gaps_.pulls(particle(s))) return wall_gaps_.queue_due(line_, s);
     return line_.queue_due(s);
   }
   // The closing speed at the gap's local time.
   const T& closing(Slot s) const { return line_.closing(s); }
   // The closing speed at another time.
   T closing_at(Slot s, const T& time) const {
-    if (field_.pulls(particle(s))) return line_.closing_at(field_, s, time);
+    if (wall_gaps_.pulls(particle(s))) return wall_gaps_.closing_at(line_, s, time);
     return closing(s);
   }
   // The closing speed at the next collision.
   T closing_when_due(Slot s) const {
-    if (field_.pulls(particle(s))) return line_.approach(field_, s).meeting_speed().value_or(T(0));
+    if (wall_gaps_.pulls(particle(s))) return wall_gaps_.approach(line_, s).meeting_speed().value_or(T(0));
     return closing(s);
   }
 
@@ -78,10 +78,10 @@ template <Real T, class Masses> class HeldGaps {
     return on_left < on_right ? on_left : on_right;
   }
   // Whether anything falls or is shaken.
-  bool falls() const { return field_.anywhere(); }
+  bool falls() const { return wall_gaps_.anywhere(); }
   // After a collision at s, if it was with a floor (gravity.hpp).
   std::optional<Rebound<T>> rebound(Slot s) const {
-    return field_.rebound(particle(s), closing(s), line_.gaps.since_start(s));
+    return wall_gaps_.rebound(particle(s), closing(s), line_.gaps.since_start(s));
   }
   const Account<T>& account() const { return line_.gaps.account(); }
   void lose(Slot s, const T& energy) { line_.gaps.lose(s, energy); }
@@ -98,7 +98,7 @@ template <Real T, class Masses> class HeldGaps {
 
   // ---- reading, at a local time not before the last collision
   T gap_at(Slot s, const T& time) const {
-    if (field_.pulls(particle(s))) return line_.gap_at(field_, s, time);
+    if (wall_gaps_.pulls(particle(s))) return wall_gaps_.gap_at(line_, s, time);
     return line_.gaps.gap_at(s, closing(s), time);
   }
   const Walls<T>& walls() const { return walls_; }
@@ -122,7 +122,7 @@ template <Real T, class Masses> class HeldGaps {
   HeldGaps(std::shared_ptr<const Particles<T>> particles, const T& start, GapRange held)
       : particles_(std::move(particles)), line_(*particles_, start),
         range_(particles_->on_ring(), held.first - particles_->gaps().first, particles_->gaps().last - held.last, 2),
-        walls_(particles_->walls()), field_(*particles_) {
+        walls_(particles_->walls()), wall_gaps_(*particles_) {
     require_particles(*particles_, start);
     if (std::numeric_limits<T>::is_exact) require_no_gravity(*particles_, "use a type that has square roots");
   }
@@ -137,7 +137,7 @@ template <Real T, class Masses> class HeldGaps {
   // The slot of the gap that has so many particles between itself and the wall of the pile.
   Slot slot_in_pile(ParticleIndex height) const {
     const auto h = static_cast<Slot>(height);
-    return field_.pile_end() == End::left ? first() + h : last() - h;
+    return wall_gaps_.pile_end() == End::left ? first() + h : last() - h;
   }
 
   std::shared_ptr<const Particles<T>> particles_;
@@ -148,7 +148,7 @@ template <Real T, class Masses> class HeldGaps {
   T fastest_{0};  // closing speed at the start
   Anchor<T> left_, right_;
   Walls<T> walls_;
-  Gravity<T> field_;
+  WallGaps<Line> wall_gaps_;
 };
 
 }  // namespace cradle

@@ -8,6 +8,7 @@
 #include <optional>
 #include <tuple>
 
+#include "cradle/core/chains/chain.hpp"
 #include "cradle/core/engine/collapse.hpp"
 #include "cradle/core/initial/particles.hpp"
 
@@ -54,6 +55,12 @@ template <Real T> struct Policy {
 
   // Whether a gap size is given: then a collapse is followed until a gap is smaller.
   bool follows_a_gap() const { return collapse == CollapsePolicy::stop && is_positive(stop_gap); }
+  // By what factor gaps shrink until the run stops at that size.
+  template <class Chain> T followed(const Chain& chain) const {
+    if (!follows_a_gap() || chain.last() < chain.first()) return T(1);
+    const T factor = smallest_gap(chain) / stop_gap;
+    return T(1) < factor ? factor : T(1);
+  }
   // The status of the run after a collision that leaves this gap beside it, or this rebound from a floor. `settled`
   // says that its collapse is known, `followed` that it was followed for long enough. If a gap leaves the type's range
   // without a settled collapse, the particles may still separate. The height of a rebound leaves it long before the

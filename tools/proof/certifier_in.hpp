@@ -9,45 +9,17 @@
 #include <memory>
 #include <optional>
 #include <tuple>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
 #include "cradle/core/certify/checker.hpp"
 #include "cradle/precision/ball_text.hpp"
 #include "cradle/tools/proof/agreement.hpp"
+#include "cradle/tools/proof/certain_law.hpp"
 #include "cradle/tools/proof/certificate.hpp"
-#include "cradle/tools/setup/initial_state.hpp"
+#include "cradle/tools/proof/proved_snapshots.hpp"
 
 namespace cradle::tools {
-
-template <Enclosing N> CertainLaw<N> certain_law(const Scene& scene) {
-  using Kind = typename CertainLaw<N>::Kind;
-  CertainLaw<N> law;
-  if (scene.law.type == LawType::sticky) {
-    law.kind = Kind::sticky;
-    return law;
-  }
-  if (scene.law.type == LawType::wet) {
-    law.kind = Kind::wet;
-    law.loss = number<N>(scene.law.loss);
-    return law;
-  }
-  law.restitution = number<N>(scene.law.restitution);
-  law.elastic = scene.law.restitution == Decimal("1");
-  if (scene.run.collapse == tools::scene::CollapsePolicy::merge) {
-    law.kind = Kind::merging;
-    law.merge_speed = number<N>(scene.run.merge_speed);
-    return law;
-  }
-  // To elastic particles a cut-off does nothing; under gravity it holds for walls too.
-  const bool acts = !law.elastic || scene.gravity.acts();
-  if (acts && scene.law.cutoff > Decimal("0")) law.cutoff = number<N>(scene.law.cutoff);
-  if (!law.elastic && scene.law.cutoff_exponent) law.cutoff_exponent = number<N>(*scene.law.cutoff_exponent);
-  if (acts && scene.run.collapse == tools::scene::CollapsePolicy::contact_time)
-    law.contact_time = number<N>(scene.run.contact_time);
-  return law;
-}
 
 template <class M> class CertifierIn final : public Certifier {
   using N = Ball<M>;
@@ -128,7 +100,6 @@ template <class M> class CertifierIn final : public Certifier {
   }
 
  private:
-  static Enclosed enclosed(const N& x) { return {in_decimals(x), in_doubles(x), static_cast<long double>(x.radius())}; }
   static std::string middle(const N& x) { return to_text(x.middle()); }
   ReportedDoubt reported(const Doubt<N>& doubt, double time) const {
     return {doubt.check,
@@ -160,17 +131,16 @@ template <class M> class CertifierIn final : public Certifier {
   void inspect(const RequestedTime& asked, const RunSample& sample, bool of_series) {
     const N time = number<N>(asked.time) - start_;
     const CertainState<N> state = sample.at_collision ? checker_.state_now() : checker_.state_at(time);
-    snapshots_ += asked.of_snapshots;
     if (state.doubt) {
       // A collision just at the time of a sample leaves that open, not what comes after.
-      if (!asked.last) return;
+      if (!asked.last) return asked.of_snapshots ? snapshots_.skip() : void();
       certificate_.doubt = reported(*state.doubt, sample.time.value);
     } else {
       compare(sample, asked, time, state, of_series);
     }
     if (certificate_.doubt) throw ProofEnds();
     add_sample(sample, asked, state);
-    if (asked.of_snapshots) add_snapshot(time, sample.time.value);
+    if (asked.of_snapshots) snapshots_.add(time, sample.time.value, certificate_.snapshots);
   }
 
   // All that the run has of what is proved of it. A collision on the wrong side of a threshold need not change their
@@ -236,7 +206,7 @@ template <class M> class CertifierIn final : public Certifier {
       same_number("energy lost in" + name, column + "lost", of_run.dissipated, wall.dissipated,
                   collisions * errors.wall_energy);
     }
-    if (asked.of_snapshots) compare_particles(sample.particles, time, run);
+    if (asked.of_snapshots) snapshots_.compare(sample.particles, time, run);
     if (const auto& broken = run.broken()) certificate_.doubt = reported(*broken, sample.time.value);
   }
   static long double time_error(const RunErrors& errors, long double since, long double closing) {
@@ -244,76 +214,6 @@ template <class M> class CertifierIn final : public Certifier {
                        : std::numeric_limits<long double>::infinity();
   }
   static long double of_balls() { return from_text<long double>(to_text(M(std::numeric_limits<M>::epsilon()))); }
-
-  void compare_particles(const SampledParticles& particles, const N& time, Agreement<N>& run) {
-    std::unordered_map<ParticleIndex, std::size_t> at;  // by cluster
-    for (std::size_t j = 0; j < particles.index.size(); ++j)
-      if (const auto cluster = checker_.cluster(particles.index[j]))
-        run.count("particles of the snapshot in one cluster", at.emplace(*cluster, j).second ? 1 : 2, 1);
-    std::vector<std::optional<ProvedParticle>> rows(particles.index.size());
-    checker_.for_each(time, [&](ParticleIndex particle, const N& m, const N& x, const N& v) {
-      const auto found = at.find(particle);
-      const bool there = found != at.end();
-      if (!there && (particle < particles.from || particle > particles.to)) return;
-      const auto number = [&](const char* what, const std::vector<std::string>& all, const N& of_proof,
-                              long double bound) {
-        const auto quantity = [&] { return fmt::format("{} of particle {} in the snapshot", what, particle); };
-        run.number(quantity, there ? all[found->second] : std::string(), of_proof, bound);
-      };
-      const N place = there ? nearest_image(x, particles.x[found->second]) : x;
-      number("m", particles.m, m, run.errors().mass);
-      number("x", particles.x, place, run.errors().place);
-      number("v", particles.v, v, run.errors().speed);
-      if (there) rows[found->second] = ProvedParticle{m, place, v, x};
-    });
-    add_particles(rows);
-  }
-  // The rows of a snapshot in the file, from left to right.
-  struct ProvedParticle {
-    N m, x, v, unfolded;
-  };
-  // A place on a ring and so many whole turns that it is nearest to another one.
-  static N turned(N x, const N& near, const N& length) {
-    for (double turns = 0x1p53; std::abs(turns) >= 0x1p52 && std::isfinite(turns);) {  // a double has not all digits
-      turns = std::round(to_double(N((near - x) / length)));
-      if (std::isfinite(turns)) x = x + N(turns) * length;
-    }
-    return x;
-  }
-  // The way round a ring from a particle to the next one, wherever the run has folded them to.
-  N way(const ProvedParticle& from, const ProvedParticle& to, bool single) const {
-    const N length = particles_->circumference(), way = turned(N(to.unfolded - from.unfolded), N(0), length);
-    return single || way < N(0) ? N(way + length) : way;
-  }
-  void add_particles(const std::vector<std::optional<ProvedParticle>>& rows) {
-    const std::string table = fmt::format("snapshots/{:04}/", snapshots_ - 1);
-    const auto add = [&](const char* column, std::size_t j, std::optional<N> proved, long double bound) {
-      tables_.add(table + column, j, std::move(proved), bound);
-    };
-    const bool on_ring = particles_->on_ring();
-    between_.clear();
-    for (std::size_t j = 0; j < rows.size(); ++j) {
-      if (!rows[j]) continue;
-      const ProvedParticle& row = *rows[j];
-      add("m", j, row.m, errors_.mass);
-      add("x", j, row.x, errors_.place);
-      add("v", j, row.v, errors_.speed);
-      if (j + 1 == rows.size() && !on_ring) break;
-      if (const auto& next = rows[j + 1 < rows.size() ? j + 1 : 0]) {
-        const N gap = on_ring ? way(row, *next, rows.size() == 1) : N(next->x - row.x);
-        between_.push_back({enclosed(gap), enclosed(row.v - next->v)});
-        add("gap", j, gap, errors_.gap + errors_.of_gap * static_cast<long double>(gap.size()));
-        add("closing_speed", j, row.v - next->v, 2 * errors_.speed);
-      } else {
-        between_.push_back({});
-      }
-    }
-  }
-  // On a ring: the run folds places to one circumference.
-  N nearest_image(const N& x, const std::string& of_run) const {
-    if (!particles_->on_ring() || of_run.find('n') != of_run.npos) return x;
-    return turned(x, from_text<N>(of_run), particles_->circumference());
-  }
 
   void add_sample(const RunSample& sample, const RequestedTime& asked, const CertainState<N>& state) {
     // At the last collision the time is that of the exact system, which has made the collision by then.
@@ -339,29 +239,6 @@ template <class M> class CertifierIn final : public Certifier {
       proved_sample.walls[k] = {wall.collisions, enclosed(wall.given), enclosed(wall.dissipated)};
     }
     certificate_.samples.push_back(std::move(proved_sample));
-  }
-
-  void add_snapshot(const N& time, double of_run) {
-    const std::size_t number = snapshots_ - 1;  // that of the run's
-    Group doubles{fmt::format("certificate/snapshots/{:04}", number), {{"time", of_run}}, {}},
-        exact{fmt::format("exact/snapshots/{:04}", number), {{"time", of_run}}, {}};
-    std::vector<std::uint64_t> index;
-    Bounds places, velocities, gaps, closing_speeds;
-    checker_.for_each(time, [&](ParticleIndex particle, const N&, const N& x, const N& v) {
-      index.push_back(static_cast<std::uint64_t>(particle));
-      places.add(enclosed(x)), velocities.add(enclosed(v));
-    });
-    for (const auto& [gap, closing] : between_) gaps.add(gap), closing_speeds.add(closing);
-    for (Group* group : {&doubles, &exact}) {
-      group->columns.push_back({"index", "1", "of a particle of the cluster, at the start", index});
-      group->columns.back().names = true;
-    }
-    places.put(doubles, exact, "x", "l", "position");
-    velocities.put(doubles, exact, "v", "l/t", "velocity");
-    gaps.put(doubles, exact, "gap", "l", "distance between a row of the run's snapshot and the next");
-    closing_speeds.put(doubles, exact, "closing_speed", "l/t", "closing speed of these two");
-    certificate_.snapshots.push_back(std::move(doubles));
-    certificate_.snapshots.push_back(std::move(exact));
   }
 
   // Checks the collisions that wait. With beside_ they are checked on another thread, after those before them.
@@ -401,14 +278,14 @@ template <class M> class CertifierIn final : public Certifier {
   Certificate certificate_;
   // What is proved of the run's tables, and by how much the run may be off at the last sample.
   ProvedTables<N> tables_;
+  ProvedSnapshots<N> snapshots_{*particles_, checker_, tables_};
   struct Meeting {
     N time, closing;
   };
-  std::vector<Meeting> meetings_;                       // those that the file has
-  std::vector<std::pair<Enclosed, Enclosed>> between_;  // gaps and closing speeds of the last snapshot
+  std::vector<Meeting> meetings_;  // those that the file has
   RunErrors errors_;
   long double since_ = 0;
-  std::size_t snapshots_ = 0, series_rows_ = 0;  // how many the run has taken
+  std::size_t series_rows_ = 0;  // how many the run has taken
   bool beside_ = false;
   Proposed proposed_, checked_;                      // next and last
   std::future<std::optional<DoubtAt<N>>> checking_;  // last: waits for the thread at the end

@@ -36,6 +36,13 @@ TEST_P(CollapsePolicies, PlainClockStandsStillEarly) {
   EXPECT_EQ(moved_last, GetParam().plain_clock_stops);
 }
 
+TEST_P(CollapsePolicies, GapsShrinkByAKnownFactorUntilARunStops) {
+  const auto run = stopping_run(0);
+  EXPECT_EQ((Policy<double>{CollapsePolicy::stop, 0x1p-900}.followed(run.chain())), 0x1p900);
+  EXPECT_EQ((Policy<double>{CollapsePolicy::stop, 2}.followed(run.chain())), 1);
+  EXPECT_EQ((Policy<double>{CollapsePolicy::cutoff, 0x1p-900}.followed(run.chain())), 1);
+}
+
 TEST_P(CollapsePolicies, StopSettlesTheCollapseTime) {
   auto run = stopping_run(0);
   ASSERT_EQ(run.advance(1e6), Status::collapsed);

@@ -5,7 +5,7 @@ import html.parser
 import unittest
 
 import cradle
-from cradle import program, simulation
+from cradle import compiled, program
 
 
 class Case(unittest.TestCase):
@@ -41,7 +41,7 @@ def set_words(settings):
 def live():
     """Why there can be no live simulations; "" where the module for them is built."""
     try:
-        simulation.module()
+        compiled.module()
         return ""
     except cradle.Error as error:
         return error.message

@@ -19,7 +19,7 @@ from unittest import mock
 import cradle
 import numpy as np
 import small
-from cradle import program, simulation
+from cradle import compiled, program
 
 if small.live():
     raise unittest.SkipTest(small.live())
@@ -364,11 +364,11 @@ class Calls(small.Case):
 
     def test_without_the_module(self):
         with tempfile.TemporaryDirectory() as folder, mock.patch.dict(sys.modules), \
-                mock.patch.object(simulation.program, "find", lambda: os.path.join(folder, "cradle")), \
-                mock.patch.object(simulation, "__file__", os.path.join(folder, "simulation.py")):
-            del sys.modules[simulation.MODULE]
+                mock.patch.object(compiled.program, "find", lambda: os.path.join(folder, "cradle")), \
+                mock.patch.object(compiled, "__file__", os.path.join(folder, "compiled.py")):
+            del sys.modules[compiled.MODULE]
             self.refused(4, "module for live simulations is missing", cradle.Simulation, "fig2")
             for name, message in (("_live.cpython-27-other.so", "found _live.cpython-27-other.so"),
-                                  ("_live" + simulation.importlib.machinery.EXTENSION_SUFFIXES[0], "cannot be loaded")):
+                                  ("_live" + compiled.importlib.machinery.EXTENSION_SUFFIXES[0], "cannot be loaded")):
                 small.written(os.path.join(folder, name), b"")
                 self.refused(4, message, cradle.Simulation, "fig2")

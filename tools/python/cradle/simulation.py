@@ -2,38 +2,31 @@
 from __future__ import annotations
 
 import decimal
-import glob
 import html
-import importlib.machinery
-import importlib.util
 import inspect
 import os
 import re
-import sys
 import warnings
 from collections.abc import Callable
 from numbers import Integral
-from types import ModuleType
-from typing import TYPE_CHECKING, Any, NamedTuple, Union
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-from . import program
 from .commands import Scene, Settings, assignments, source_of
-from .errors import BAD_FILE, BAD_INPUT, Error, callable_of, path_of
+from .compiled import module, threads_of
+from .errors import BAD_INPUT, Error, callable_of, path_of
 from .frames import imported
 from .result import Result, open
 from .scene import parse_toml
+from .timer import EXACT, Time, Timer, decimal_of
 
 if TYPE_CHECKING:
     import numpy as np
 
-Time = Union[float, int, str, decimal.Decimal]
-MODULE = f"{__package__}._live"
 REACHED = "reached the end"
 DIGITS = ("time", "energy", "x", "v", "m", "gap", "closing_speed")  # quantities that decimals() has
 MOST_COLLISIONS = 2 ** 64 - 1  # in a call of step: as many as a run can count
 PART, MOST_EVENTS, EVENT = 2 ** 20, 10 ** 7, 56  # collisions; bytes of one event
-MOST_CALLS, MOST_THREADS = 1e9, 4096
-EXACT = decimal.Context(prec=4096)  # for sums of times; wide types have many digits
+MOST_CALLS = 1e9
 
 
 class Collision(NamedTuple):
@@ -301,71 +294,3 @@ class Simulation:
         cells = "".join(f"<tr><th style='text-align:left'>{name}</th><td style='text-align:left'>{value}</td></tr>"
                         for name, value in rows.items())
         return f"<table><caption>simulation {html.escape(self.name)}</caption>{cells}</table>"
-
-
-class Timer:
-    """A function that is called at times start + k step."""
-
-    def __init__(self, start: decimal.Decimal, step: decimal.Decimal, function: Callable[[Simulation], Any]):
-        self.start, self.step, self.function, self.count = start, step, function, 1
-
-    @property
-    def due(self) -> decimal.Decimal:
-        return EXACT.add(self.start, EXACT.multiply(self.step, self.count))
-
-    def call(self, simulation: Simulation) -> None:
-        self.count += 1  # first: the function may raise, and is not called again at this time
-        self.function(simulation)
-
-
-def decimal_of(value: Time) -> decimal.Decimal:
-    try:
-        number = decimal.Decimal(str(value))
-    except decimal.InvalidOperation:
-        number = decimal.Decimal("nan")
-    if not number.is_finite():
-        raise Error(f"not a time (found {value}): give a number", BAD_INPUT)
-    return number
-
-
-def threads_of(threads: int | None) -> int:
-    if threads is None:
-        return 0
-    if not isinstance(threads, Integral) or not 0 <= threads <= MOST_THREADS:
-        raise Error(f"threads: not a number of threads (found {threads!r}): give a whole number up to "
-                    f"{MOST_THREADS}, 0 or None for all processors", BAD_INPUT)
-    return int(threads)
-
-
-def module() -> ModuleType:
-    """The compiled part: beside this package where it is installed, or beside the program in its build folder.
-
-    Raises Error if it is missing or cannot be used.
-    """
-    if MODULE in sys.modules:
-        return sys.modules[MODULE]
-    folders = [os.path.dirname(os.path.abspath(__file__))]
-    try:
-        folders.append(os.path.dirname(os.path.realpath(program.find())))
-    except Error:
-        pass  # reported by who calls the program
-    importlib.invalidate_caches()  # it may have been built just now
-    spec = importlib.machinery.PathFinder.find_spec(MODULE, folders)
-    if spec is None:
-        others = [os.path.basename(path) for folder in folders for path in glob.glob(os.path.join(folder, "_live*.so"))]
-        raise Error(f"the module for live simulations is missing (found {', '.join(others) or 'none'} in "
-                    f"{' and '.join(folders)}, for {sys.executable} {sys.version.split()[0]}): install Debian's "
-                    "python3-dev and pybind11-dev and build with tools/quickstart.sh, with CRADLE_PYTHON set to this "
-                    "Python; cradle.run() does without", BAD_FILE)
-    from . import __version__
-    try:
-        found = importlib.util.module_from_spec(spec)
-        spec.loader.exec_module(found)
-    except ImportError as error:
-        raise Error(f"{spec.origin}: cannot be loaded ({error}): build it on this machine, for this Python",
-                    BAD_FILE) from None
-    if found.version != __version__:
-        raise Error(f"{spec.origin}: of another version (found {found.version}, here {__version__}): build it again",
-                    BAD_FILE)
-    sys.modules[MODULE] = found
-    return found

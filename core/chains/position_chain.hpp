@@ -5,6 +5,7 @@
 // gaps, and is compared with it in precision: in a collapsing core its differences lose their digits, which it counts.
 // Under gravity particles fly along parabolas; shaken walls are where their motion says.
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -31,9 +32,8 @@ template <Real T> class PositionChain {
   // Throws std::invalid_argument for particles on a ring or without order in the working precision, and for walls that
   // hold particles.
   PositionChain(std::shared_ptr<const Particles<T>> particles, const T& start)
-      : count_(static_cast<std::size_t>(particles->count())), start_(start), origin_(start),
-        first_particle_(particles->gaps().first), walls_(particles->walls()), of_walls_(particles), field_(*particles),
-        lost_(particles->energy_to_lose()) {
+      : start_(start), origin_(start), first_particle_(particles->gaps().first), walls_(particles->walls()),
+        of_walls_(particles), field_(*particles), lost_(particles->energy_to_lose()) {
     require_particles(*particles, start);
     if (std::numeric_limits<T>::is_exact) require_no_gravity(*particles, "use a type that has square roots");
     require(!particles->on_ring(), "a ring in absolute positions (circumference ", particles->circumference(),
@@ -46,9 +46,6 @@ template <Real T> class PositionChain {
     if (const Wall<T>* wall = particles->holding())
       require(false, "a particle that rests on a wall in absolute positions (rest speed ", wall->rest_speed,
               "): use a chain in gaps");
-    fall_.assign(particles_.size(), T(0));
-    if (falls())
-      for (ParticleIndex b = 0; b < count(); ++b) fall_[slot_of(b) - 2] = field_.acceleration();
     due_.assign(slots(), T(0));
     closing_.assign(slots(), T(0));
     for (Slot s = first(); s <= last(); ++s) predict(s, start);
@@ -69,7 +66,7 @@ template <Real T> class PositionChain {
   bool on_ring() const { return false; }
   ParticleIndex particle(Slot s) const { return static_cast<ParticleIndex>(s) - 2 + first_particle_; }
   Slot slot_of(ParticleIndex particle) const { return static_cast<Slot>(particle - first_particle_ + 2); }
-  ParticleIndex count() const { return static_cast<ParticleIndex>(count_); }
+  ParticleIndex count() const { return of_walls_->count(); }
   ParticleIndex collided_particles() const {
     return front_right_ < front_left_ ? 0 : static_cast<ParticleIndex>(outermost_right() - outermost_left() + 1);
   }
@@ -87,9 +84,11 @@ template <Real T> class PositionChain {
   template <class Law> CollisionResult<T> collide(const Law& law, Slot s, const T& time) requires(Law::bounces_only) {
     Particle &left = at(s), &right = at(s + 1);
     const bool at_wall = walls_.beside(particle(s));
-    const Outcome<T> outcome = at_wall             ? strike_wall(law, s, time)
-                               : left.m == right.m ? outcome_of(law, s, time, EqualMasses<T>{left.m, T(left.m / T(2))})
-                                                   : outcome_of(law, s, time, TwoMasses<T>{left.m, right.m});
+    const Outcome<T> outcome = with_law(law, [&](const auto& own) {
+      if (at_wall) return strike_wall(own, s, time);
+      return left.m == right.m ? outcome_of(own, s, time, EqualMasses<T>{left.m, T(left.m / T(2))})
+                               : outcome_of(own, s, time, TwoMasses<T>{left.m, right.m});
+    });
     advance(s, time);
     advance(s + 1, time);
     walls_.right_of(particle(s)) ? left.x = right.x : right.x = left.x;
@@ -147,7 +146,9 @@ template <Real T> class PositionChain {
                     self.front_right_, self.account_, self.lost_, self.walls_);
   }
   void loaded() const {
-    require_state(particles_.size() == slots_of_particles() && due_.size() == slots() && closing_.size() == slots(),
+    const ParticleIndex all = count() + (walls_.has(End::left) ? 1 : 0) + (walls_.has(End::right) ? 1 : 0);
+    require_state(particles_.size() == static_cast<std::size_t>(all) && due_.size() == slots() &&
+                      closing_.size() == slots(),
                   "lists");
     const bool none = front_left_ == std::numeric_limits<Slot>::max() && front_right_ == 0;
     require_state(none || (front_left_ >= first() && front_left_ <= front_right_ && front_right_ <= last()), "fronts");
@@ -207,9 +208,6 @@ template <Real T> class PositionChain {
     bool rested(const T& now, const T& contact_time) const { return !collided || !(now - time < contact_time); }
   };
 
-  template <LawChoice Law> Outcome<T> strike_wall(const Law& law, Slot s, const T& time) {
-    return law.visit([&](const auto& own) { return strike_wall(own, s, time); });
-  }
   template <class Law> Outcome<T> strike_wall(const Law& law, Slot s, const T& time) {
     const Particle& struck = at(walls_.left_of(particle(s)) ? s + 1 : s);
     if (falls()) {
@@ -225,10 +223,6 @@ template <Real T> class PositionChain {
     }
     return walls_.strike(particle(s), closing_[s], struck.m);
   }
-  template <LawChoice Law, class Masses>
-  Outcome<T> outcome_of(const Law& law, Slot s, const T& time, const Masses& masses) const {
-    return law.visit([&](const auto& own) { return outcome_of(own, s, time, masses); });
-  }
   template <class Law, class Masses>
   Outcome<T> outcome_of(const Law& law, Slot s, const T& time, const Masses& masses) const {
     if constexpr (LawWithMemory<Law, T>)
@@ -240,31 +234,23 @@ template <Real T> class PositionChain {
   // Slots of which the left particle is the outermost one that has collided; walls are not counted.
   Slot outermost_left() const { return front_left_ + (walls_.left_of(particle(front_left_)) ? 1 : 0); }
   Slot outermost_right() const { return front_right_ + (walls_.right_of(particle(front_right_)) ? 0 : 1); }
-  std::size_t slots_of_particles() const {
-    return count_ + (walls_.has(End::left) ? 1 : 0) + (walls_.has(End::right) ? 1 : 0);
-  }
 
   Pair<T> since_start(const T& time) const { return two_sum(time, T(-start_)); }
   Particle& at(Slot s) { return particles_[s - 2]; }  // the particle on the left of a gap
   const Particle& at(Slot s) const { return particles_[s - 2]; }
 
+  T fall(Slot s) const { return s >= slot_of(0) && s < slot_of(count()) ? field_.acceleration() : T(0); }
   T place(Slot s, const T& time) const {
     const Particle& p = at(s);
     const T flown = time - p.time;
     if (of_walls_->shaken(particle(s))) return at_wall(*of_walls_, particle(s), since_start(time)).x.value();
-    return p.x + (p.v + fall_[s - 2] * flown / T(2)) * flown;
+    return p.x + (falls() ? T(p.v + fall(s) * flown / T(2)) : p.v) * flown;
   }
   T velocity(Slot s, const T& time) const {
     if (of_walls_->shaken(particle(s))) return at_wall(*of_walls_, particle(s), since_start(time)).v.value();
-    return at(s).v + fall_[s - 2] * (time - at(s).time);
+    return falls() ? T(at(s).v + fall(s) * (time - at(s).time)) : at(s).v;
   }
-  void advance(Slot s, const T& time) {
-    Particle& p = at(s);
-    p.x = place(s, time);
-    p.v = velocity(s, time);
-    p.time = time;
-    p.collided = true;
-  }
+  void advance(Slot s, const T& time) { at(s) = {place(s, time), velocity(s, time), time, at(s).m, true}; }
 
   // Where flights are shorter than times resolve, the particle has not fallen to the wall by the time of the collision:
   // it leaves at the speed of the outcome, not by the impulse.
@@ -290,8 +276,7 @@ template <Real T> class PositionChain {
   Notice resolve(Slot s, const T& time) {
     predict(s, time);
     const T gap = gap_at(s, time), epsilon = std::numeric_limits<T>::epsilon();
-    const T x_left = magnitude(at(s).x), x_right = magnitude(at(s + 1).x);
-    const T unit = epsilon * (x_left < x_right ? x_right : x_left);
+    const T unit = epsilon * std::max<T>(magnitude(at(s).x), magnitude(at(s + 1).x));
     const T rounding =
         T(16) * (unit + epsilon * magnitude(time) * (magnitude(velocity(s, time)) + magnitude(velocity(s + 1, time))));
     if (gap < unit * T(1000000) && account_.unresolved++ == 0) account_.first_unresolved = {time, particle(s), gap};
@@ -299,10 +284,8 @@ template <Real T> class PositionChain {
     return gap < floor_ ? Notice::gap_below_floor : Notice::none;
   }
 
-  std::size_t count_;
   std::vector<Particle> particles_;  // and walls
   std::vector<T> due_, closing_;
-  std::vector<T> fall_;  // under gravity: the acceleration of each, 0 of walls
   T floor_{0};
   T start_, origin_;
   ParticleIndex first_particle_;

@@ -50,6 +50,14 @@ concept LawChoice = requires(const L& law) {
   law.visit([](const auto&) {});
 };
 
+// f(law), a chosen law by its own type.
+template <class L, class F> auto with_law(const L& law, const F& f) {
+  if constexpr (LawChoice<L>)
+    return law.visit(f);
+  else
+    return f(law);
+}
+
 // The law as one of a certain type; null if it is another one.
 template <class Law, class L> const Law* law_as(const L& law) {
   if constexpr (std::same_as<Law, L>)
@@ -66,10 +74,7 @@ template <LawChoice L> bool has_threshold(const L& law) {
 
 // Whether it is a law with memory.
 template <Real T, class L> bool has_memory(const L& law) {
-  if constexpr (LawChoice<L>)
-    return law.visit([]<class Own>(const Own&) { return LawWithMemory<Own, T>; });
-  else
-    return LawWithMemory<L, T>;
+  return with_law(law, []<class Own>(const Own&) { return LawWithMemory<Own, T>; });
 }
 
 }  // namespace cradle

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "cradle/core/base/counter_rng.hpp"
 #include "cradle/core/chains/gap_chain.hpp"
 #include "cradle/core/chains/position_chain.hpp"
 #include "cradle/core/engine/simulation.hpp"
@@ -26,12 +27,7 @@ template <class T> using GapRun = Simulation<T, Inelastic<T>, GapChain<T>>;
 template <class T> using MassRun = Simulation<T, Inelastic<T>, GapChain<T, IndividualMasses<T>>>;
 template <class T> using PositionRun = Simulation<T, Inelastic<T>, PositionChain<T>>;
 
-inline std::uint64_t hash(ParticleIndex i) {
-  std::uint64_t z = static_cast<std::uint64_t>(i) + 0x9E3779B97F4A7C15;
-  z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9;
-  z = (z ^ (z >> 27)) * 0x94D049BB133111EB;
-  return z ^ (z >> 31);
-}
+inline std::uint64_t hash(ParticleIndex i) { return splitmix64(static_cast<std::uint64_t>(i) + 0x9E3779B97F4A7C15); }
 
 inline std::int64_t bits_of(ParticleIndex particle, int shift, std::uint64_t mask) {
   return static_cast<std::int64_t>((hash(particle) >> shift) & mask);

@@ -112,6 +112,22 @@ template <class T> Scene<T> as_list(const Particles<T>& particles) {
   return as_list(particles, [&](ParticleIndex b) { return particles.mass(b); });
 }
 
+// The same particles in other units, in a moving frame or, with negative lengths and speeds, in the mirror.
+struct Frame {
+  double length = 1, speed = 1, mass = 1, drift = 0;
+};
+inline constexpr Frame mirror{.length = -1, .speed = -1};
+inline Scene<double> seen(const Particles<double>& particles, const Frame& frame) {
+  std::vector<double> x, v, m;
+  for (ParticleIndex k = 0; k < particles.count(); ++k) {
+    const ParticleIndex b = frame.length < 0 ? particles.count() - 1 - k : k;
+    x.push_back(frame.length * particles.position(b));
+    v.push_back(frame.speed * particles.velocity(b) + frame.drift);
+    m.push_back(frame.mass * particles.mass(b));
+  }
+  return list(x, v, m);
+}
+
 // Collide at t = 1, and then both gaps are 1 wide and closing at 1: below a restitution of 7 - 4 sqrt 3 they collapse.
 // (0, 1, 2 would be a triple collision.)
 template <class T = double> Scene<T> three_particles(std::vector<T> m = {}) {

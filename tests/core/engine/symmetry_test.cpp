@@ -26,22 +26,6 @@ template <class Item> std::vector<Item> reversed(std::vector<Item> items) {
   return items;
 }
 
-// The same particles in other units, in a moving frame or, with negative lengths and speeds, in the mirror.
-struct Frame {
-  double length = 1, speed = 1, mass = 1, drift = 0;
-};
-constexpr Frame mirror{.length = -1, .speed = -1};
-Scene<double> seen(const Particles<double>& particles, const Frame& frame) {
-  Values x, v, m;
-  for (ParticleIndex k = 0; k < particles.count(); ++k) {
-    const ParticleIndex b = frame.length < 0 ? particles.count() - 1 - k : k;
-    x.push_back(frame.length * particles.position(b));
-    v.push_back(frame.speed * particles.velocity(b) + frame.drift);
-    m.push_back(frame.mass * particles.mass(b));
-  }
-  return list(x, v, m);
-}
-
 // Masses of a particle by its number.
 double one_to_eight(ParticleIndex b) { return static_cast<double>(1 + bits_of(b, 40, 7)); }
 // All different, as are their sums: multiples of 2^-20, so that all sums are exact.

@@ -116,8 +116,8 @@ template <class T> Scene<T> as_list(const Particles<T>& particles) {
 struct Frame {
   double length = 1, speed = 1, mass = 1, drift = 0;
 };
-inline constexpr Frame mirror{.length = -1, .speed = -1};
-inline Scene<double> seen(const Particles<double>& particles, const Frame& frame) {
+inline constexpr Frame mirror_frame{.length = -1, .speed = -1};
+inline Scene<double> seen_in(const Particles<double>& particles, const Frame& frame) {
   std::vector<double> x, v, m;
   for (ParticleIndex k = 0; k < particles.count(); ++k) {
     const ParticleIndex b = frame.length < 0 ? particles.count() - 1 - k : k;

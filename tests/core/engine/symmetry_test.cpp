@@ -77,7 +77,7 @@ const std::vector<Case<Dry>>& dry_cases() {
 // Losses add up in the order of collisions, which need not be that of the mirror where two commute: two sums exact to
 // two roundings each; and a merger's is a product of four numbers, from the left: four roundings.
 template <class Law> void expect_mirror(const Case<Law>& scene) {
-  const Result original = run(scene), mirrored = run(seen(*scene.particles, mirror), scene.law, scene.end);
+  const Result original = run(scene), mirrored = run(seen_in(*scene.particles, mirror_frame), scene.law, scene.end);
   EXPECT_TRUE(same_collisions(original.counts, mirrored.counts));
   EXPECT_EQ(reversed(mirrored.c.gap), original.c.gap);
   EXPECT_EQ(reversed(mirrored.c.closing_speed), original.c.closing_speed);
@@ -104,7 +104,7 @@ TEST(WetSymmetry, Mirror) {
 // Positions and velocities are put together from the left: they mirror to the closure error and its own rounding.
 TEST(Symmetry, MirroredPositionsDifferByTheClosureErrorAtMost) {
   for (const auto& scene : dry_cases()) {
-    const Result original = run(scene), mirrored = run(seen(*scene.particles, mirror), scene.law, scene.end);
+    const Result original = run(scene), mirrored = run(seen_in(*scene.particles, mirror_frame), scene.law, scene.end);
     const Configuration<double>& c = original.c;
     const double rounding = 8 * epsilon * (std::abs(c.x.front()) + std::abs(c.x.back()) + scene.end);
     EXPECT_LE(largest_difference(times(reversed(mirrored.c.x), -1), c.x), std::abs(c.closure_gap.value()) + rounding);
@@ -116,7 +116,7 @@ TEST(Symmetry, MirroredPositionsDifferByTheClosureErrorAtMost) {
 // Velocities are multiples of 2^-13, and the total mass of particles that merge is a power of two: adding 1000.25 to
 // them, and so to their mean, is exact, and so are their differences.
 template <class Law> void expect_same_in_a_moving_frame(const Case<Law>& scene) {
-  const Result original = run(scene), moved = run(seen(*scene.particles, {.drift = 1000.25}), scene.law, scene.end);
+  const Result original = run(scene), moved = run(seen_in(*scene.particles, {.drift = 1000.25}), scene.law, scene.end);
   EXPECT_TRUE(identical(original.counts, moved.counts));
   EXPECT_EQ(moved.c.gap, original.c.gap);
   EXPECT_EQ(moved.c.closing_speed, original.c.closing_speed);
@@ -141,7 +141,7 @@ TEST(WetSymmetry, GalileanFrame) {
 }
 
 template <class Law> void expect_same_in_other_units(const Case<Law>& scene, const Law& law) {
-  const Scene<double> scaled = seen(*scene.particles, {.length = 1024, .speed = 1. / 64, .mass = 8});
+  const Scene<double> scaled = seen_in(*scene.particles, {.length = 1024, .speed = 1. / 64, .mass = 8});
   const Result original = run(scene), other = run(scaled, law, scene.end * 1024 * 64);
   EXPECT_TRUE(identical(original.counts, other.counts));
   EXPECT_EQ(times(other.c.gap, 1. / 1024), original.c.gap);

@@ -248,7 +248,7 @@ TEST(Gravity, AFloorThatMovesUniformly) {
   const Inelastic<double> law(0.95, 1e-2);
   const auto particles = rmix<double>(20);
   auto at_rest = falling(between(-0.5, particles, Wall<double>{-1., 0., .9}), law);
-  auto moving = falling(between(-0.5, seen(*particles, {.drift = 0.375}), Wall<double>{-1., .375, .9}), law);
+  auto moving = falling(between(-0.5, seen_in(*particles, {.drift = 0.375}), Wall<double>{-1., .375, .9}), law);
   at_rest.advance(50), moving.advance(50);
   EXPECT_GT(moving.counts().collisions, 200U);
   EXPECT_EQ(configuration_at(moving, 50.).gap, configuration_at(at_rest, 50.).gap);
@@ -262,7 +262,7 @@ TEST(Gravity, AMirrorImage) {
   const auto expect_mirror = [&](const Shaking& low, const Shaking& high, double speed, double end) {
     auto run = falling(between(-0.5, particles, wall(-1, low, 0.9, speed), wall(33, high)),
                        Inelastic<double>(0.95, 1e-2)),
-         mirrored = falling(between(0.5, seen(*particles, mirror), wall(-33, high), wall(1, low, 0.9, -speed)),
+         mirrored = falling(between(0.5, seen_in(*particles, mirror_frame), wall(-33, high), wall(1, low, 0.9, -speed)),
                             Inelastic<double>(0.95, 1e-2));
     run.advance(end), mirrored.advance(end);
     EXPECT_GT(run.counts().collisions, 300U);

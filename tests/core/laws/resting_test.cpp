@@ -81,8 +81,8 @@ TEST(Resting, AccountsBalance) {
           const Wall<double> floor = wall(0, motions[k], 0.25, sign * speed, 0.1);
           std::optional<Wall<double>> ceiling;
           if (closed) ceiling = wall(sign * 2.5, nullptr, 0.75, sign * speed, 0);
-          const auto particles = between(-sign, mirrored ? seen(*pile, mirror) : pile, mirrored ? ceiling : floor,
-                                         mirrored ? std::optional(floor) : ceiling);
+          const auto particles = between(-sign, mirrored ? seen_in(*pile, mirror_frame) : pile,
+                                         mirrored ? ceiling : floor, mirrored ? std::optional(floor) : ceiling);
           auto run = falling(particles, Inelastic<double>(0.75));
           int resting = 0, flying = 0;
           for (double t = 0.01; t < 25; t += 0.0501) {

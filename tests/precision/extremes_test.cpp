@@ -154,12 +154,12 @@ TYPED_TEST(EveryExtreme, AllParticlesMeetAtOnePoint) {
 // Rows on a lattice: at every multiple of l/(2 u0) one more layer meets. Collisions at such a time count as made.
 template <class Run> void expect_triangular_numbers(Run run) {
   using T = typename Run::Scalar;
-  for (std::uint64_t layers = 1; layers <= 30; ++layers) {
-    const T time(static_cast<std::int64_t>(layers));
-    run.advance(T(time - T(1) / T(2)));
-    ASSERT_EQ(run.counts().collisions, layers * (layers - 1) / 2);
-    run.advance(time);
-    ASSERT_EQ(run.counts().collisions, layers * (layers + 1) / 2);
+  const auto triangular = [](int k) { return static_cast<std::uint64_t>(k * (k + 1) / 2); };
+  for (int layers = 1; layers <= 30; ++layers) {
+    run.advance(T(T(layers) - T(1) / T(2)));
+    ASSERT_EQ(run.counts().collisions, triangular(layers - 1));
+    run.advance(T(layers));
+    ASSERT_EQ(run.counts().collisions, triangular(layers));
   }
   run.advance(T(100));
   EXPECT_EQ(run.counts().collisions, 30U * 30U) << "every particle of one row has met every one of the other";

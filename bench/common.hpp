@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "cradle/core/base/counter_rng.hpp"
 #include "cradle/core/initial/list.hpp"
 #include "cradle/core/initial/rows.hpp"
 
@@ -27,13 +28,7 @@ inline double seconds_now(clockid_t clock = CLOCK_THREAD_CPUTIME_ID) {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-// Finaliser of splitmix64.
-inline std::uint64_t hash(std::uint64_t i) {
-  std::uint64_t z = i + 0x9E3779B97F4A7C15;
-  z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9;
-  z = (z ^ (z >> 27)) * 0x94D049BB133111EB;
-  return z ^ (z >> 31);
-}
+inline std::uint64_t hash(std::uint64_t i) { return cradle::splitmix64(i + 0x9E3779B97F4A7C15); }
 
 // The paper's two rows, displaced by hashes.
 template <class T> std::shared_ptr<const cradle::Rows<T>> rows(ParticleIndex n) {

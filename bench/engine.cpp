@@ -46,35 +46,31 @@ template <class Chain> class Cradle {
   void advance(double until) { simulation_.advance(until); }
   std::uint64_t collisions() const { return simulation_.counts().collisions; }
 
- private:
+ protected:
   cradle::Simulation<double, cradle::Inelastic<double>, Chain> simulation_;
 };
 using Gaps = Cradle<cradle::GapChain<double>>;
+using Positions = Cradle<cradle::PositionChain<double>>;
 
 // A run in segments (core/parallel/segments.hpp) on so many threads, or cut into so many pieces. The pieces show how
 // evenly as many processors would share the work: `parallel` is the number of collisions of all pieces divided by that
 // of the busiest one, in each time slab.
-template <unsigned threads, unsigned pieces = 0> class InSegments {
+template <unsigned threads, unsigned pieces = 0> class InSegments : public Gaps {
  public:
   InSegments(const ParticlesPointer& particles)
-      : simulation_(cradle::Inelastic<double>(law.restitution, law.cutoff), cradle::GapChain<double>(particles, 0.0)),
-        executor_(threads), segments_(cradle::workers(executor_), segmentation(*particles)) {}
+      : Gaps(particles), executor_(threads), segments_(cradle::workers(executor_), segmentation(*particles)) {}
   void advance(double until) { simulation_.advance(until, segments_); }
-  std::uint64_t collisions() const { return simulation_.counts().collisions; }
   const auto& statistics() const { return segments_.statistics(); }
 
  private:
-  using Law = cradle::Inelastic<double>;
   static cradle::Segmentation segmentation(const cradle::Particles<double>& particles) {
     cradle::Segmentation how;
     if (pieces > 0) how.gaps = static_cast<std::size_t>(particles.count()) / pieces;
     return how;
   }
-  cradle::Simulation<double, Law, cradle::GapChain<double>> simulation_;
   cradle::TbbExecutor executor_;
-  cradle::Segments<Law, cradle::GapChain<double>> segments_;
+  cradle::Segments<cradle::Inelastic<double>, cradle::GapChain<double>> segments_;
 };
-using Positions = Cradle<cradle::PositionChain<double>>;
 
 template <class Engine> struct Twin : Engine {
   Twin(const ParticlesPointer& particles) : Engine(*particles, law) {}

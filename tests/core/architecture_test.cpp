@@ -15,7 +15,6 @@
 #include <vector>
 
 #include "cradle/tests/places.hpp"
-#include "cradle/tests/texts.hpp"
 
 namespace cradle::test::architecture_test {
 
@@ -76,10 +75,6 @@ TEST(Architecture, CoreIncludesTheStandardLibraryAndItselfOnly) {
     EXPECT_TRUE(ensemble || !forbidden.contains(name)) << place(line);
   }
   EXPECT_GT(found, 50) << "sources are looked for in " << source_folder;
-}
-
-TEST(Architecture, PrecisionDoesNotKnowTheTools) {
-  for (const Line& line : code("precision")) EXPECT_FALSE(has(line.text, "#include \"cradle/tools/")) << place(line);
 }
 
 // The part of the tower that a path is in; empty: none.

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "cradle/core/base/counter_rng.hpp"
 #include "cradle/core/chains/gap_chain.hpp"
 #include "cradle/core/chains/position_chain.hpp"
 #include "cradle/core/engine/simulation.hpp"
@@ -26,12 +27,7 @@ template <class T> using GapRun = Simulation<T, Inelastic<T>, GapChain<T>>;
 template <class T> using MassRun = Simulation<T, Inelastic<T>, GapChain<T, IndividualMasses<T>>>;
 template <class T> using PositionRun = Simulation<T, Inelastic<T>, PositionChain<T>>;
 
-inline std::uint64_t hash(ParticleIndex i) {
-  std::uint64_t z = static_cast<std::uint64_t>(i) + 0x9E3779B97F4A7C15;
-  z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9;
-  z = (z ^ (z >> 27)) * 0x94D049BB133111EB;
-  return z ^ (z >> 31);
-}
+inline std::uint64_t hash(ParticleIndex i) { return splitmix64(static_cast<std::uint64_t>(i) + 0x9E3779B97F4A7C15); }
 
 inline std::int64_t bits_of(ParticleIndex particle, int shift, std::uint64_t mask) {
   return static_cast<std::int64_t>((hash(particle) >> shift) & mask);
@@ -114,6 +110,22 @@ Scene<T> as_list(const Particles<T>& particles, const Mass& mass, const T& circu
 }
 template <class T> Scene<T> as_list(const Particles<T>& particles) {
   return as_list(particles, [&](ParticleIndex b) { return particles.mass(b); });
+}
+
+// The same particles in other units, in a moving frame or, with negative lengths and speeds, in the mirror.
+struct Frame {
+  double length = 1, speed = 1, mass = 1, drift = 0;
+};
+inline constexpr Frame mirror_frame{.length = -1, .speed = -1};
+inline Scene<double> seen_in(const Particles<double>& particles, const Frame& frame) {
+  std::vector<double> x, v, m;
+  for (ParticleIndex k = 0; k < particles.count(); ++k) {
+    const ParticleIndex b = frame.length < 0 ? particles.count() - 1 - k : k;
+    x.push_back(frame.length * particles.position(b));
+    v.push_back(frame.speed * particles.velocity(b) + frame.drift);
+    m.push_back(frame.mass * particles.mass(b));
+  }
+  return list(x, v, m);
 }
 
 // Collide at t = 1, and then both gaps are 1 wide and closing at 1: below a restitution of 7 - 4 sqrt 3 they collapse.

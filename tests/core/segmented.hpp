@@ -185,10 +185,5 @@ SlabsMade expect_same_in_segments(const Scene<std::type_identity_t<T>>& scene, c
   }
   return made;
 }
-template <class Chain, class T = typename Chain::Scalar, class Law>
-SlabsMade expect_same_in_segments(const Scene<std::type_identity_t<T>>& scene, const Law& law, const SegmentsAs& as,
-                                  const std::vector<std::type_identity_t<T>>& times) {
-  return expect_same_in_segments<Chain, T>(scene, law, std::vector{as}, times);
-}
 
 }  // namespace cradle::test

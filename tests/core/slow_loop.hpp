@@ -18,7 +18,6 @@ namespace cradle::test {
 template <class T> struct Step {
   ParticleIndex particle;  // on the left of the gap
   Pair<T> time;            // in the scene
-  T local_time;            // in the chain
   T closing_speed;         // before the collision
   T nearest_gap;           // the smaller of the neighbouring gaps
 };
@@ -42,7 +41,7 @@ template <class Law, class Chain> class SlowLoop {
 
   Step<T> collide(Slot s) {
     const T time = chain_.due(s);
-    Step<T> step{chain_.particle(s), chain_.stamp(time), time, chain_.closing(s), T(0)};
+    Step<T> step{chain_.particle(s), chain_.stamp(time), chain_.closing(s), T(0)};
     const CollisionResult<T> collision = chain_.collide(law_, s, time);
     step.nearest_gap = chain_.nearest_gap(s);
     if constexpr (StreamingChain<Chain>)
@@ -60,19 +59,25 @@ template <class Law, class Chain> class SlowLoop {
   int collisions_per_move_, since_move_ = 0;
 };
 
-// Of all gaps the chosen one is the first by (exact time, position), whatever the keys of the queue.
+// Of all gaps the chosen one is the first by (exact time, position), whatever the keys of the queue, and collides then.
 template <class Run, class T>
-void expect_each_the_first(Run run, const T& end, std::uint64_t least_collisions, std::uint64_t least_close_calls = 0) {
+Counts expect_each_the_first(Run run, const T& end, std::uint64_t least_collisions,
+                             std::uint64_t least_close_calls = 0) {
   const auto& chain = run.chain();
   run.advance(end, [&](const Collision<T>& collision) {
     std::optional<Slot> first;
     for (Slot s = chain.first(); s <= chain.last(); ++s)
-      if (chain.closing(s) > T(0) && (!first || chain.due(s) < chain.due(*first))) first = s;
+      if (chain.right(s) != s && chain.closing(s) > T(0) && (!first || chain.due(s) < chain.due(*first))) first = s;
     ASSERT_TRUE(first.has_value());
     ASSERT_EQ(chain.particle(*first), collision.left) << "collision " << run.counts().collisions;
+    ASSERT_EQ(chain.particle(chain.right(*first)), collision.right) << "collision " << run.counts().collisions;
+    ASSERT_TRUE(chain.stamp(chain.due(*first)).value() == collision.time.value())
+        << "collision " << run.counts().collisions;
   });
+  EXPECT_EQ(run.account().order_lost, 0U);
   EXPECT_GE(run.counts().collisions, least_collisions);
   EXPECT_GE(run.counts().close_calls, least_close_calls);
+  return run.counts();
 }
 
 }  // namespace cradle::test

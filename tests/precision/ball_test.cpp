@@ -162,6 +162,23 @@ TYPED_TEST(Balls, CombinationsHoldAndDoNotGrow) {
   }
 }
 
+// x - c(x - y) (x - y) with c(w) = w/8 and a derivative w/4 of c(w) w.
+TYPED_TEST(Balls, SharesThatDependOnADifferenceEnclose) {
+  using B = Ball<TypeParam>;
+  Draws<TypeParam> draws;
+  const B eighth = B(1) / B(8);
+  for (int k = 0; k < 500; ++k) {
+    const B x = draws.ball(), y = draws.ball(), apart = x - y;
+    const typename B::Share share(B(apart.middle(), 0) * eighth, apart * B(2) * eighth);
+    const auto [l, r] = B::combined(x, y, apart, share, share);
+    for (const Rational& a : draws.numbers(x))
+      for (const Rational& b : draws.numbers(y)) {
+        expect_holds(l, Rational(a - (a - b) * (a - b) / 8));
+        expect_holds(r, Rational(b + (a - b) * (a - b) / 8));
+      }
+  }
+}
+
 TYPED_TEST(Balls, ComparisonsAreCertainOrOpen) {
   using B = Ball<TypeParam>;
   Draws<TypeParam> draws;

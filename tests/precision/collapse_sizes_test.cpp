@@ -1,7 +1,7 @@
 // Collapse of many particles under policy stop. Proves: for 3, 10 and 100 particles with a restitution at which three
 // collapse, a run with exact dynamics ends by itself with the collapse time of the same run in 100 digits, within its
 // stated uncertainty. In double, where rounding may leave the collapse open, it may also end with the type's range.
-// Near the elastic limit 100 and 1e5 particles run until just before the onset of collapse; no order is lost. A
+// Near the elastic limit 1e5 particles run until just before the onset of collapse; no order is lost. A
 // mirror-symmetric pattern of 4 particles, in which symmetry is unstable, keeps it as long as the type's digits allow.
 #include <gtest/gtest.h>
 
@@ -69,10 +69,6 @@ TYPED_TEST(CollapseSizes, RunsEndByThemselves) { EXPECT_EQ(expect_ends_of_all_si
 
 TEST(CollapseSizesInDouble, RunsEndByThemselves) {
   EXPECT_LE(expect_ends_of_all_sizes<double>(), 4) << "of the two rows, whose last collisions are slow";
-  // Close to the elastic limit many particles collapse together, from t = N_c/(2 u0) on; a run to just before that ends
-  // too.
-  auto before = gap_run(rshock<double>(100), Inelastic<double>(0.9), stop_below(0.));
-  EXPECT_EQ(before.advance(0.98 * onset(0.9)), Status::reached);
 }
 
 TEST(SlowCollapseSizes, AHundredThousandParticlesUpToTheOnset) {

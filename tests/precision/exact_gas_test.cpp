@@ -179,6 +179,7 @@ template <class T, class Run> void expect_as_gas(Run& run, const Gas<T>& gas, co
   }
   ASSERT_EQ(now.front_left.has_value(), gas.outermost(true) != nullptr);
   if (!now.front_left) return;
+  EXPECT_EQ(now.particles, gas.outermost(false) - gas.outermost(true) + 1);
   expect_same(*now.front_left, gas.place(*gas.outermost(true)));
   expect_same(*now.front_right, gas.place(*gas.outermost(false)));
 }

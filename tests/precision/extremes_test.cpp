@@ -16,8 +16,6 @@
 
 namespace cradle::test::extremes_test {
 
-constexpr double u = 0x1p-53;
-
 // The same doubles in every scalar type.
 template <class T> Scene<T> in(const Particles<double>& particles) {
   std::vector<double> x, v, m;
@@ -89,63 +87,18 @@ TYPED_TEST(EveryExtreme, RestitutionNextToZero) {
   }
 }
 
-// Elastic collisions up to t are the inversions of x + v t, exact in double for these places and velocities.
-std::uint64_t inversions(const Particles<double>& particles, double t) {
-  std::uint64_t count = 0;
-  const auto place = [&](ParticleIndex b) { return particles.position(b) + particles.velocity(b) * t; };
-  for (ParticleIndex i = 0; i < particles.count(); ++i)
-    for (ParticleIndex j = i + 1; j < particles.count(); ++j) count += place(i) > place(j);
-  return count;
-}
-
-TYPED_TEST(EveryExtreme, RestitutionNextToOne) {
-  using T = typename TypeParam::Scalar;
-  for (const T& restitution : {T(1), T(1. - u)}) {
-    auto run = gap_run(rmix<T>(200), Inelastic<T>(restitution, T(0)));
-    for (const int t : {5, 20}) {
-      ASSERT_EQ(run.advance(T(t)), Status::reached);
-      EXPECT_EQ(run.counts().collisions, inversions(*rmix<double>(200), t)) << t;
-    }
-    EXPECT_TRUE((run.energy_lost() > T(0)) == (restitution < T(1)));
-    // (1 - eps)(1 + eps) w^2/4 a collision, w < 2
-    EXPECT_LE(to_double(run.energy_lost()), static_cast<double>(run.counts().collisions) * 2 * u);
-    EXPECT_EQ(run.chain().account().order_lost, 0U);
-  }
-}
-
-// Three particles meet at one place at t = 1. By the tie rule the left gap goes first; elastic particles come out
-// mirrored.
+// Three particles meet at one place at t = 1. By the tie rule the left gap goes first.
 TYPED_TEST(EveryExtreme, ThreeParticlesMeet) {
   using T = typename TypeParam::Scalar;
   auto run = gap_run(three<T>(2), Inelastic<T>(T(1), T(0)));
   std::vector<ParticleIndex> order;
   ASSERT_EQ(run.advance(T(2), [&](const Collision<T>& c) { order.push_back(c.left); }), Status::reached);
   EXPECT_EQ(order, (std::vector<ParticleIndex>{0, 1, 0}));
-  EXPECT_GT(run.chain().account().simultaneous, 0U);
-  EXPECT_EQ(run.chain().account().order_lost, 0U);
-  const auto c = configuration_at(run, T(2));
-  EXPECT_TRUE(c.x == (std::vector<T>{T(0), T(1), T(2)}) && c.v == (std::vector<T>{T(-1), T(0), T(1)}));
-
   for (const char* restitution : {"0", ".05", ".5", ".9"}) {
     auto inelastic = gap_run(three<T>(2), Inelastic<T>(from_text<T>(restitution), from_text<T>("1e-4")));
     EXPECT_EQ(inelastic.advance(T(1000)), Status::reached) << restitution;
     EXPECT_EQ(inelastic.chain().account().order_lost, 0U) << restitution;
   }
-}
-
-// Two rows of a perfect lattice: k pairs are k spacings apart, for k up to the length of a row; they meet at k/(2 u).
-TYPED_TEST(EveryExtreme, LatticesMeetAllAtOnce) {
-  using T = typename TypeParam::Scalar;
-  const Scene<T> lattice = lattice_rows<T>(60);
-  auto run = gap_run(lattice, Inelastic<T>(T(1), T(0)));
-  for (const int t : {1, 2, 7, 29, 30}) {
-    ASSERT_EQ(run.advance(T(t)), Status::reached);
-    const auto k = static_cast<std::uint64_t>(t);
-    EXPECT_EQ(run.counts().collisions, k * (k + 1) / 2) << t;
-  }
-  ASSERT_EQ(run.advance(T(100)), Status::reached);
-  EXPECT_EQ(run.counts().collisions, 30U * 30U);  // every particle of one row has met every one of the other
-  EXPECT_EQ(run.chain().account().order_lost, 0U);
 }
 
 // The law is elastic for closing speeds below the cut-off, inelastic at it.

@@ -166,9 +166,6 @@ TYPED_TEST(MpfrInPlace, ZerosAndIntegers) {
     EXPECT_EQ(mpfr_get_sj(T(i).get(), MPFR_RNDN), i);
   }
   EXPECT_EQ(static_cast<double>(T(-0.1)), -0.1);
-  EXPECT_TRUE(T(1) + std::numeric_limits<T>::epsilon() > T(1));
-  EXPECT_TRUE(T(1) + std::numeric_limits<T>::epsilon() / T(4) == T(1));
-  EXPECT_TRUE(std::numeric_limits<T>::min() > T(0) && std::numeric_limits<T>::max() + T(1) > T(0));
 }
 
 }  // namespace cradle::test::mpfr_test

@@ -3,28 +3,27 @@
 // loaded again continues with the same bits, and so does one that is inspected in between.
 // RC_PARAMS="max_success=10000" makes it more; CTest sets the seed.
 #include <memory>
+#include <numeric>
 #include <vector>
 
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 
 #include "cradle/core/base/state.hpp"
-#include "cradle/core/chains/cluster_chain.hpp"
-#include "cradle/core/chains/gap_chain.hpp"
 #include "cradle/core/chains/position_chain.hpp"
-#include "cradle/core/engine/simulation.hpp"
-#include "cradle/core/initial/list.hpp"
 #include "cradle/core/observe/guards.hpp"
 #include "cradle/tests/core/slow_loop.hpp"
+#include "cradle/tests/precision/drawn_scenes.hpp"
 #include "cradle/tests/precision/every_scalar.hpp"
 
 namespace cradle::test::random_scenes_test {
 
-// Whole numbers, so that every type gets the same scene: in 1/1024.
+using drawn::particles_of;
+
+// The scene in 1/64, restitution and times in 1/1024: whole numbers, so that every type gets the same scene.
 struct Drawn {
-  std::vector<int> gaps, velocities, masses;
-  int restitution = 0, cutoff = 1, loss = 0;
-  bool ring = false;
+  drawn::Drawn scene;
+  int restitution = 0;
   std::vector<int> cuts;  // times, in order
 };
 
@@ -32,31 +31,19 @@ Drawn draw() {
   using rc::gen::inRange;
   Drawn d;
   const auto particles = *inRange<std::size_t>(2, 9);
-  d.gaps = *rc::gen::container<std::vector<int>>(particles, inRange(1, 1 << 16));
-  d.velocities = *rc::gen::container<std::vector<int>>(particles, inRange(-(1 << 14), 1 << 14));
-  d.masses = *rc::gen::container<std::vector<int>>(particles, inRange(64, 1 << 14));
+  d.scene.gaps = *rc::gen::container<std::vector<int>>(particles, inRange(1, 1 << 16));
+  d.scene.velocities = *rc::gen::container<std::vector<int>>(particles, inRange(-(1 << 14), 1 << 14));
+  d.scene.masses = *rc::gen::container<std::vector<int>>(particles, inRange(64, 1 << 14));
   d.restitution = *inRange(1, 1025);  // of 0, what particles do that stay together is rounding's to decide
-  d.cutoff = *inRange(32, 1024);
-  d.loss = *inRange(0, 2048);
-  d.ring = *rc::gen::arbitrary<bool>();
+  d.scene.cutoff = *inRange(32, 1024);
+  d.scene.loss = *inRange(0, 2048) << 8;
+  if (*rc::gen::arbitrary<bool>()) d.scene.length = std::accumulate(d.scene.gaps.begin(), d.scene.gaps.end(), 0);
   d.cuts = *rc::gen::container<std::vector<int>>(3, inRange(0, 20 << 10));
   std::sort(d.cuts.begin(), d.cuts.end());
   return d;
 }
 
-template <class T> T in_units(int n) { return T(n) / T(1024); }
-
-template <class T> std::shared_ptr<const Particles<T>> particles_of(const Drawn& d, bool ring) {
-  std::vector<T> x, v, m;
-  T place(0);
-  for (std::size_t k = 0; k < d.gaps.size(); ++k) {
-    x.push_back(place);
-    place += in_units<T>(d.gaps[k]);
-    v.push_back(in_units<T>(d.velocities[k]));
-    m.push_back(in_units<T>(d.masses[k]));
-  }
-  return std::make_shared<List<T>>(x, v, m, ring ? place : T(0));
-}
+template <class T> T time_of(int cut) { return T(cut) / T(1024); }
 
 const int until = 20;
 
@@ -72,7 +59,7 @@ void check(const Law& law, const std::shared_ptr<const Particles<T>>& particles,
   if (whole.advance(T(until), [&](const Collision<T>& c) { collisions.push_back(c.left); }) != Status::reached) return;
   T collision_before(0), energy = particles->kinetic_energy();
   for (const int cut : d.cuts) {
-    const T time = in_units<T>(cut);
+    const T time = time_of<T>(cut);
     inspected.advance(time);
     const T left = particles->kinetic_energy() - inspected.energy_lost();
     const auto found = guarded(inspected.configuration(time), *particles, inspected.counts().collisions, left, time,
@@ -109,60 +96,58 @@ void check(const Law& law, const std::shared_ptr<const Particles<T>>& particles,
             std::vector<ParticleIndex>(collisions.begin(), collisions.begin() + static_cast<std::ptrdiff_t>(most)));
 }
 
-template <class Chain, class MakeLaw> void check(MakeLaw law, const Drawn& d, bool ring) {
+template <class Chain, class MakeLaw> void check(MakeLaw law, const Drawn& d) {
   using T = typename Chain::Scalar;
-  check<T, std::invoke_result_t<MakeLaw, const Drawn&>, Chain>(law(d), particles_of<T>(d, ring), d);
+  check<T, std::invoke_result_t<MakeLaw, const Drawn&>, Chain>(law(d), particles_of<T>(d.scene), d);
 }
 template <class Chain, class MakeLaw> void check_drawn_scenes(MakeLaw law, bool on_rings = true) {
   EXPECT_TRUE(rc::check([&] {
-    const Drawn d = draw();
-    check<Chain>(law, d, on_rings && d.ring);
+    Drawn d = draw();
+    if (!on_rings) d.scene.length = 0;
+    check<Chain>(law, d);
   }));
 }
-template <class T> Inelastic<T> inelastic(const Drawn& d) {
-  return Inelastic<T>(in_units<T>(d.restitution), in_units<T>(d.cutoff));
+template <class T> T cutoff(const Drawn& d) { return T(d.scene.cutoff) / T(64); }
+template <class T> Inelastic<T> inelastic(const Drawn& d, const T& below) {
+  return Inelastic<T>(T(d.restitution) / T(1024), below);
 }
+template <class T> Inelastic<T> with_cutoff(const Drawn& d) { return inelastic<T>(d, cutoff<T>(d)); }
 
 template <class P> class RandomScenes : public InPrecision<P> {};
 TYPED_TEST_SUITE(RandomScenes, EachKindOfPrecision, PrecisionName);
 
 TYPED_TEST(RandomScenes, InelasticInGaps) {
   using T = typename TestFixture::Scalar;
-  check_drawn_scenes<GapChain<T, IndividualMasses<T>>>(inelastic<T>);
+  check_drawn_scenes<GapChain<T, IndividualMasses<T>>>(with_cutoff<T>);
 }
 TYPED_TEST(RandomScenes, InelasticInPositions) {
   using T = typename TestFixture::Scalar;
-  check_drawn_scenes<PositionChain<T>>(inelastic<T>, false);
+  check_drawn_scenes<PositionChain<T>>(with_cutoff<T>, false);
 }
 TYPED_TEST(RandomScenes, WithAContactTime) {
   using T = typename TestFixture::Scalar;
   check_drawn_scenes<GapChain<T, IndividualMasses<T>>>(
-      [](const Drawn& d) { return ContactTime<T>(Inelastic<T>(in_units<T>(d.restitution)), in_units<T>(d.cutoff)); });
+      [](const Drawn& d) { return ContactTime<T>(inelastic<T>(d, T(0)), time_of<T>(d.scene.cutoff)); });
 }
 TYPED_TEST(RandomScenes, Wet) {
   using T = typename TestFixture::Scalar;
-  check_drawn_scenes<ClusterChain<T>>([](const Drawn& d) { return cradle::Wet<T>(in_units<T>(d.loss)); });
+  check_drawn_scenes<ClusterChain<T>>([](const Drawn& d) { return cradle::Wet<T>(T(d.scene.loss) / T(64)); });
 }
 TYPED_TEST(RandomScenes, Merging) {
   using T = typename TestFixture::Scalar;
-  check_drawn_scenes<ClusterChain<T>>([](const Drawn& d) {
-    return InelasticMerging<T>(Inelastic<T>(in_units<T>(d.restitution)), in_units<T>(d.cutoff));
-  });
+  check_drawn_scenes<ClusterChain<T>>(
+      [](const Drawn& d) { return InelasticMerging<T>(inelastic<T>(d, T(0)), cutoff<T>(d)); });
 }
 
 // Found here: three particles collapse down to gaps of 1e-1080, and the times of other collisions, in such units, are
 // beyond the range of the queue's keys. They were taken for never.
 TYPED_TEST(RandomScenes, ACollapseBeyondTheRangeOfDoubleForgetsNoOtherCollision) {
   using T = typename TestFixture::Scalar;
-  const Drawn d{{1, 1, 17, 1, 1, 1},
-                {-16384, -14252, -16384, -16384, -15276, -15679},
-                {64, 7790, 64, 7568, 64, 64},
-                9,
-                32,
-                0,
-                false,
-                {0, 0, 64}};
-  EXPECT_TRUE(rc::check([&] { check<GapChain<T, IndividualMasses<T>>>(inelastic<T>, d, false); }));
+  Drawn d{{{1, 1, 17, 1, 1, 1}, {-16384, -14252, -16384, -16384, -15276, -15679}, {64, 7790, 64, 7568, 64, 64}},
+          9,
+          {0, 0, 64}};
+  d.scene.cutoff = 32;
+  EXPECT_TRUE(rc::check([&] { check<GapChain<T, IndividualMasses<T>>>(with_cutoff<T>, d); }));
 }
 
 }  // namespace cradle::test::random_scenes_test

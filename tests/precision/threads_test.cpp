@@ -21,7 +21,7 @@ template <class T, class Masses> void expect_same_gaps(const Scene<T>& scene, co
        {Inelastic<T>(T(999) / T(1000), T(1) / T(100000)), Inelastic<T>(T(3) / T(10), T(1) / T(2))})
     for (const SegmentsAs& as : {SegmentsAs{{.gaps = 40, .ghosts = 4, .collisions = 4, .anywhere = true}, 2},
                                  SegmentsAs{{.gaps = 150, .ghosts = 48, .anywhere = true}, 3}})
-      all += expect_same_in_segments<GapChain<T, Masses>>(scene, law, as, times);
+      all += expect_same_in_segments<GapChain<T, Masses>>(scene, law, {as}, times);
   EXPECT_GT(all.slabs, 10U);
   EXPECT_GT(all.again, 0U);
 }
@@ -38,8 +38,8 @@ TYPED_TEST(WideThreads, SegmentsOfParticlesThatMergeOnARing) {
   using T = typename TypeParam::Scalar;
   const SegmentsAs as{{.gaps = 40, .ghosts = 8, .collisions = 4, .anywhere = true}, 2};
   const Scene<T> scene = gas<T>(600, T(600), true);
-  SlabsMade made = expect_same_in_segments<ClusterChain<T>>(scene, Wet<T>(T(1) / T(50)), as, std::vector{T(5), T(40)});
-  made += expect_same_in_segments<ClusterChain<T>>(scene, Sticky<T>(), as, std::vector{T(5), T(40)});
+  SlabsMade made = expect_same_in_segments<ClusterChain<T>>(scene, Wet<T>(T(1) / T(50)), {as}, {T(5), T(40)});
+  made += expect_same_in_segments<ClusterChain<T>>(scene, Sticky<T>(), {as}, {T(5), T(40)});
   EXPECT_GT(made.slabs, 10U);
   EXPECT_GT(made.again, 0U);
 }

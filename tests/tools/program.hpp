@@ -14,6 +14,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "cradle/core/base/counter_rng.hpp"
 #include "cradle/tests/places.hpp"
 #include "cradle/tests/texts.hpp"
 #include "cradle/tools/result/reader.hpp"
@@ -142,11 +143,6 @@ inline std::string until_collisions(const std::string& file) {
 }
 
 // The initial perturbation of the published fixtures: the splitmix64 finaliser of the particle's number.
-inline std::uint64_t hash(std::uint64_t i) {
-  std::uint64_t z = i + 0x9E3779B97F4A7C15;
-  z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9;
-  z = (z ^ (z >> 27)) * 0x94D049BB133111EB;
-  return z ^ (z >> 31);
-}
+inline std::uint64_t hash(std::uint64_t i) { return splitmix64(i + 0x9E3779B97F4A7C15); }
 
 }  // namespace cradle::tests

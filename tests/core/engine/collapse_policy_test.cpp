@@ -112,6 +112,23 @@ TEST_P(CollapsePolicies, PositionsEndWithAnAccount) {
   EXPECT_EQ(account.order_lost, 0U);
 }
 
+// A run in positions that starts at another time finds the same collapse later, to the rounding of absolute times.
+TEST(CollapsePolicies, PositionsFindTheCollapseWheneverTheRunStarts) {
+  const auto particles = list<double>({0, 1, 3, 10}, {1, 0, -1, 5});  // the three on the left collapse
+  const auto collapse_from = [&](double start) {
+    auto run = position_run<double>(particles, Inelastic<double>(0.05), {.collapse = CollapsePolicy::stop}, start);
+    EXPECT_NE(run.advance(start + 100), Status::reached);
+    EXPECT_EQ(run.account().order_lost, 0U);
+    EXPECT_TRUE(run.collapse().settled);
+    return run.collapse();
+  };
+  const auto first = collapse_from(0);
+  for (const double start : {-100., -3.5, 10., 1000.}) {
+    const auto later = collapse_from(start);
+    EXPECT_NEAR(later.time.value() - start, first.time.value(), first.uncertainty + later.uncertainty) << start;
+  }
+}
+
 // Three particles at one place at one time, soft enough to collapse: collisions follow each other without end while
 // time stands still. The run must notice, whatever the policy.
 TEST(CollapsePolicies, TripleCollisionWithoutEndIsNoticed) {

@@ -53,22 +53,10 @@ Scene<double> moving(double drift, std::vector<double> m = {}) {
   return list(std::move(x), std::move(v), std::move(m));
 }
 
-TEST(Energy, InelasticCollapseOfThree) {
-  auto run = gap_run<double>(three_particles(), Inelastic(0.05), {CollapsePolicy::stop, 1e-290});
-  ASSERT_EQ(run.advance(2), Status::collapsed);
-  EXPECT_GT(run.counts().collisions, 300U);
-  const double left = sample(run, 1., run.last_collision_time()).energy;
-  // Each collision leaves 2/5 of the closing speeds.
-  EXPECT_GT(left, 1e-257);
-  EXPECT_LT(left, 1e-254);
-  EXPECT_EQ(left, run.kinetic_energy());
-  expect_near(run, exact_energy(run.chain()));
-}
-
 TEST(Energy, IsNeverNegative) {
-  for (const double restitution : {0., 0.03, 0.0717, 0.0719, 0.072, 0.08, 0.2, .5}) {
+  for (const double restitution : {0., 0.03, 0.05, 0.0717, 0.0719, 0.072, 0.08, 0.2, .5}) {
     SCOPED_TRACE(restitution);
-    auto run = gap_run<double>(three_particles(), Inelastic(restitution), {CollapsePolicy::stop, 1e-200});
+    auto run = gap_run<double>(three_particles(), Inelastic(restitution), {CollapsePolicy::stop, 1e-290});
     double before = 1;
     for (double t = 0.25; t < 40; t += 0.25) {
       const Status status = run.advance(t);
@@ -79,6 +67,8 @@ TEST(Energy, IsNeverNegative) {
       if (status != Status::reached) break;
     }
     expect_near(run, exact_energy(run.chain()));
+    // Each of more than 300 collisions leaves 2/5 of the closing speeds.
+    EXPECT_TRUE(restitution != 0.05 || (run.counts().collisions > 300 && before > 1e-257 && before < 1e-254)) << before;
   }
 }
 

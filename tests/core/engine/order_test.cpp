@@ -2,18 +2,14 @@
 // of a gap commute exactly, since a gap's local time never decreases. If the gap between them should have closed in
 // between, the violation is counted at that gap; its collision is then due in the past, and is not clamped.
 //
-// Collisions that the queue's keys cannot distinguish, hundreds of them at a time: proves that their order is (exact
-// time, position in the line) among all of them, so that no bit depends on the width of keys. The gases are on a
-// lattice, near the elastic limit: particles at integers with integer speeds, where many collisions are within the
-// resolution of a key. The factor 1 - eps separates them, from exactly simultaneous to what a key resolves. (That no
-// bit depends on the width is in same_bits_test.cpp.)
+// Collisions that the queue's keys cannot distinguish, thousands of them at a time: proves that they are not sorted
+// anew for every collision. (That their order is by exact times, and then from the left, is in
+// precision/filtered_queue_test.cpp; that no bit depends on the width of keys in same_bits_test.cpp.)
 #include <gtest/gtest.h>
 
 #include "cradle/core/chains/cluster_chain.hpp"
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/core/rational.hpp"
-#include "cradle/tests/core/slow_loop.hpp"
-#include "cradle/tests/core/strict_real.hpp"
 
 namespace cradle::test::order_test {
 
@@ -80,23 +76,6 @@ TEST(Order, InDoubleTheSameViolationIsCounted) {
 }
 
 // ---- ties
-
-template <class T> void expect_each_the_first(ParticleIndex n, const T& restitution, int bits) {
-  cradle::test::expect_each_the_first(
-      gap_run<T>(crowds<T>(n, 5), Inelastic<T>(restitution), {}, T(0), {.least_queue_bits = bits}), T(10),
-      static_cast<std::uint64_t>(3 * n) + 1);
-}
-
-TEST(Ties, EveryCollisionIsTheFirstByTimeAndThenFromTheLeft) {
-  for (const int bits : {3, 18}) {
-    expect_each_the_first<double>(500, 1, bits);
-    expect_each_the_first<double>(500, 1 - 1e-12, bits);
-  }
-}
-TEST(Ties, EveryCollisionIsTheFirstWhereKeysAreRounded) {
-  expect_each_the_first<StrictReal>(300, StrictReal(1), 16);
-  expect_each_the_first<StrictReal>(300, StrictReal::of(1 - 1e-12), 16);
-}
 
 // The work: a crowd of k collisions takes some k log k comparisons of exact times, not k^2.
 class Counted : public GapChain<double> {

@@ -11,7 +11,6 @@
 #include <cmath>
 
 #include "cradle/core/observe/configuration_statistics.hpp"
-#include "cradle/tests/core/compare.hpp"
 #include "cradle/tests/core/fixtures.hpp"
 
 namespace cradle::test::properties_test {
@@ -94,25 +93,6 @@ TEST(Properties, MomentumOrderAndEnergyInPositions) {
   for (Case scene : cases()) {
     scene.times.resize(scene.resolved);
     expect_conservation(position_run(scene.particles, scene.law), scene);
-  }
-}
-
-// Equal masses, whatever their size, are not treated as a special case of unequal ones, nor otherwise.
-TEST(Properties, EqualMassesOneByOneHaveTheBitsOfIdenticalParticles) {
-  for (const double mass : {1., 3., .1}) {
-    const auto particles = as_list(*rshock<double>(200), [=](ParticleIndex) { return mass; });
-    for (const double restitution : {.9, .4}) {
-      auto identical_particles = gap_run<double>(particles, Inelastic<double>(restitution, 1e-3));
-      auto individual = mass_run<double>(particles, Inelastic<double>(restitution, 1e-3));
-      for (const double t : {10., 50., 80.}) {
-        ASSERT_EQ(identical_particles.advance(t), Status::reached);
-        ASSERT_EQ(individual.advance(t), Status::reached);
-        ASSERT_TRUE(identical(configuration_at(identical_particles, t), configuration_at(individual, t)))
-            << "mass " << mass << ", eps " << restitution << ", t = " << t;
-        // The ledger forms mu = m^2/(2m) as m (m/2m): one rounding more where m is no power of two.
-        ASSERT_NEAR(identical_particles.energy_lost(), individual.energy_lost(), 4 * u * individual.energy_lost());
-      }
-    }
   }
 }
 

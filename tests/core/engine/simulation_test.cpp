@@ -145,14 +145,17 @@ TEST(Cadence, TheLastCollisionTimeIsThatOfTheLastCollision) {
 
 TEST(Cadence, TheFirstIntervalIsSinceTheStart) {
   const auto particles = list<double>({0, 1, 3, 10}, {1, 0, -1, 5});
-  const auto first_interval = [](auto run) {
-    EXPECT_EQ(run.last_collision_time(), 10);
-    double interval = 0;
-    run.advance(11, [&](const Collision<double>& c) { interval = c.interval; });
-    return interval;
-  };
-  EXPECT_EQ(first_interval(gap_run<double>(particles, Inelastic(0.05), {}, 10)), 1);
-  EXPECT_EQ(first_interval(position_run<double>(particles, Inelastic(0.05), {}, 10)), 1);
+  for (const double start : {-100., -3.5, 10., 1000.}) {
+    const auto first_interval = [&](auto run) {
+      EXPECT_EQ(run.last_collision_time(), start);
+      double interval = 0;
+      run.advance(start + 1, [&](const Collision<double>& c) { interval = c.interval; });
+      return interval;
+    };
+    EXPECT_EQ(first_interval(gap_run<double>(particles, Inelastic(0.05), {}, start)), 1);
+    EXPECT_NEAR(first_interval(position_run<double>(particles, Inelastic(0.05), {}, start)), 1,
+                4e-16 * std::abs(start));
+  }
 }
 
 TEST(Cadence, StepsStopAtTheTimeRequestedLast) {

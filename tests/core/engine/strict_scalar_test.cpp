@@ -1,6 +1,7 @@
 // The whole engine on a scalar without implicit conversions (strict_real.hpp). Proves: core/ uses the scalar only
 // through the concept Real; the general code, written for types whose queue keys are rounded times, makes the same
-// collisions as the code for double and gives the same bits.
+// collisions as the code for double and gives the same bits; observers require nothing of a scalar that a rational
+// lacks.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -11,6 +12,7 @@
 #include "cradle/core/observe/sample.hpp"
 #include "cradle/tests/core/compare.hpp"
 #include "cradle/tests/core/fixtures.hpp"
+#include "cradle/tests/core/rational.hpp"
 #include "cradle/tests/core/strict_real.hpp"
 
 namespace cradle::test::strict_scalar_test {
@@ -110,6 +112,18 @@ TEST(StrictScalar, Observers) {
     return seen;
   };
   EXPECT_EQ(observe(StrictReal(0)), observe(0.));
+}
+
+// Nor do they require what rationals lack.
+TEST(StrictScalar, ObserversTakeRationals) {
+  const auto particles = rmix<Rational>(12);
+  auto run = gap_run(particles, Inelastic<Rational>(Rational(15, 16)));
+  run.advance(Rational(10));
+  const auto state = configuration_at(run, Rational(10));
+  EXPECT_EQ(sample(run, particles->kinetic_energy(), Rational(10)).energy, kinetic_energy(state, *particles));
+  EXPECT_GT(gap_statistics(state).median, 0);
+  const Profile p = profile(state, *particles, Rational(10), {-100, 100}, 1);
+  EXPECT_EQ(p.density[0] * 200, 12);
 }
 
 }  // namespace cradle::test::strict_scalar_test

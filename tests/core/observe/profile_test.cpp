@@ -1,6 +1,6 @@
-// Profiles over bins and the row of the time series. Proves, on configurations whose numbers are known: every particle
-// in range is counted once, unreached particles of the rows included; means are weighted by mass; the temperature is
-// the variance of the velocity to all digits, also where it is small against the velocity squared.
+// Profiles over bins. Proves, on configurations whose numbers are known: every particle in range is counted once,
+// unreached particles of the rows included; means are weighted by mass; the temperature is the variance of the velocity
+// to all digits, also where it is small against the velocity squared.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,7 +9,6 @@
 #include "cradle/core/initial/cold.hpp"
 #include "cradle/core/observe/configuration_statistics.hpp"
 #include "cradle/core/observe/profile.hpp"
-#include "cradle/core/observe/sample.hpp"
 #include "cradle/core/observe/zone.hpp"
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/core/observe/placed.hpp"
@@ -163,25 +162,6 @@ TEST(Profile, OfRowsThatNobodyCanWalk) {
     EXPECT_THROW(zone.find(now, *rows, 0., [&] { return ++calls == 10; }), WalkStopped);
     EXPECT_EQ(SavedState::of(zone), before);
   }
-}
-
-TEST(Sample, IsConsistentWithTheConfiguration) {
-  const auto particles = rshock<double>(400);
-  auto run = gap_run(particles, Inelastic(0.98));
-  const Sample<double> start = sample(run, particles->kinetic_energy(), 0.);
-  EXPECT_EQ(start.particles, 0);
-  EXPECT_FALSE(start.front_left || start.front_right);
-  EXPECT_EQ(start.energy, 400 * 0.125);
-  run.advance(100.5);
-  const Sample<double> s = sample(run, particles->kinetic_energy(), 100.5);
-  const auto c = configuration_at(run, 100.5);
-  EXPECT_EQ(s.counts.collisions, run.counts().collisions);
-  EXPECT_EQ(s.energy, particles->kinetic_energy() - s.energy_lost);
-  // The configuration holds one uncollided particle on either side.
-  EXPECT_EQ(s.particles + 2, static_cast<ParticleIndex>(c.x.size()));
-  const double rounding = std::abs(c.closure_gap.value()) + 8 * 100 * std::numeric_limits<double>::epsilon();
-  EXPECT_NEAR(*s.front_left, c.x[1], rounding);
-  EXPECT_NEAR(*s.front_right, c.x[c.x.size() - 2], rounding);
 }
 
 TEST(GapStatistics, LeastAndMedian) {

@@ -183,13 +183,6 @@ TEST(SampledMeans, OfFewSamplesHaveABatchEach) {
   EXPECT_TRUE(std::isnan(SampledMeans(1, 1).means()[0].mean));
 }
 
-// What stays the same over four batches gives errors half as large as they should be.
-TEST(SampledMeans, ShowBatchesThatAreTooShort) {
-  SampledMeans slow(1, mean_batches);
-  for (std::size_t k = 0; k < mean_batches; ++k) slow.add({static_cast<double>(k / 4 * 3 % 8)});
-  EXPECT_NEAR(error_growth(slow.means()), std::sqrt(31 / 7.), 1e-12);
-}
-
 TEST(SampledMeans, ContinueFromASavedState) {
   const auto add = [](SampledMeans& means, std::size_t k) { means.add({0.1 * static_cast<double>(k)}); };
   expect_continues(SampledMeans(1, 50), 50, 13, add, {SampledMeans(2, 50)});

@@ -84,7 +84,7 @@ TEST(Segments, DoNotStartWhereTheyWouldNotPay) {
 // Particles that merge, on two threads.
 TEST(Segments, OfARingOfClusters) {
   const SegmentsAs as{{.gaps = 60, .ghosts = 4, .collisions = 2, .anywhere = true}, 2};
-  const auto made = expect_same_in_segments<ClusterChain<double>>(gas<double>(700, 700.), Wet<double>(0.02), as,
+  const auto made = expect_same_in_segments<ClusterChain<double>>(gas<double>(700, 700.), Wet<double>(0.02), {as},
                                                                   std::vector{2., 10., 60.});
   EXPECT_GT(made.slabs, 5U);
   EXPECT_GT(made.again, 10U);

@@ -78,7 +78,7 @@ TYPED_TEST(Cells, MergersAtTheSameTime) {
 TEST(SlowSegments, Figure2ThroughItsCollapse) {
   const Inelastic<double> law(0.999, 1e-5);
   const auto made = expect_same_in_segments<GapChain<double>>(
-      rshock<double>(8000), law, {{.gaps = 1500, .ghosts = 48}, 2, false}, std::vector{6000., 6500., 6550.});
+      rshock<double>(8000), law, {{{.gaps = 1500, .ghosts = 48}, 2, false}}, std::vector{6000., 6500., 6550.});
   EXPECT_GT(made.slabs, 1000U);
 }
 

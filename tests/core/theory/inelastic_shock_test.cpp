@@ -112,14 +112,6 @@ TEST(InelasticFront, TurnsWhereTheContinuousVelocityVanishes) {
   }
 }
 
-TEST(InelasticFront, ReachDoesNotDependOnTheSpeed) {
-  auto shock = paper_shock<Wide>(decimal("0.99"));
-  const Wide reach = *maximal_front(shock);
-  shock.speed = Wide(7);
-  EXPECT_EQ(*maximal_front(shock), reach);
-  EXPECT_WITHIN(front_displacement(shock, *turnover_time(shock)), reach, 1000 * tiny);
-}
-
 TEST(InelasticFront, ElasticRowsPassFreely) {
   const auto shock = paper_shock<double>(1.0);
   EXPECT_FALSE(turnover_time(shock));
@@ -254,7 +246,7 @@ TEST(StickyEnergy, EndsWithTheRows) {
 }
 
 TEST(InelasticShock, HasTheScalesOfItsUnits) {
-  // lengths x 2, times x 5, masses x 3: powers of two where equality is required
+  // lengths x 4, times x 8, masses x 2: powers of two, so the bits are the same
   InelasticShock<double> unit{0.99};
   unit.particles = 200;
   InelasticShock<double> scaled{0.99, 0.5 * 4 / 8, 4, 2, 200};
@@ -263,6 +255,7 @@ TEST(InelasticShock, HasTheScalesOfItsUnits) {
   EXPECT_EQ(interaction_density(scaled, 8 * 50.0), interaction_density(unit, 50.0) / 2);
   EXPECT_EQ(mean_velocity_slope(scaled, 8 * 50.0), mean_velocity_slope(unit, 50.0) / 8);
   EXPECT_EQ(mean_velocity_slope_early(scaled), mean_velocity_slope_early(unit) / 8);
+  EXPECT_EQ(*maximal_front(scaled), 4 * *maximal_front(unit)) << "whatever the speed";
   EXPECT_EQ(energy(scaled, 8 * 50.0), energy(unit, 50.0) / 2);
   EXPECT_EQ(sticky_energy(scaled, 8 * 50.0), sticky_energy(unit, 50.0) / 2);
   EXPECT_EQ(*collapse_onset_time(scaled), 8 * *collapse_onset_time(unit));

@@ -140,6 +140,11 @@ std::string certificate_text(const Certified& run) {
     if (run.proved() && last.over)
       text += "  after it  no particles approach each other: there are no more collisions\n";
   }
+  return text;
+}
+
+std::string attempts_text(const Certified& run) {
+  std::string text;
   for (const Attempt& a : run.attempts)
     text += fmt::format("  {:.1f} s in {} and {}: {}\n", a.seconds, a.precision, a.digits,
                         a.doubt.empty() ? "proved" : a.doubt);

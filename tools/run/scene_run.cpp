@@ -2,14 +2,9 @@
 #include "cradle/tools/run/scene_run.hpp"
 
 #include <chrono>
-#include <memory>
-#include <optional>
-#include <string>
 #include <tuple>
 #include <utility>
-#include <vector>
 
-#include "cradle/tools/engines/any_engine.hpp"
 #include "cradle/tools/engines/precision.hpp"
 #include "cradle/tools/record/measurements.hpp"
 #include "cradle/tools/record/schedule.hpp"

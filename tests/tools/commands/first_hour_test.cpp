@@ -1,7 +1,6 @@
 // The first hour: `cradle` alone suggests commands, and they work; `new` lists every key that its scene could use; the
 // manual page has every command, option and key. (More of it: tests/tools/outputs.txt.)
 
-#include <algorithm>
 #include <sstream>
 #include <string>
 #include <vector>

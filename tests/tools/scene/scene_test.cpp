@@ -3,10 +3,8 @@
 #include "cradle/tools/scene/scene.hpp"
 
 #include <algorithm>
-#include <map>
-#include <sstream>
 
-#include "cradle/tests/tools/program.hpp"
+#include "cradle/tests/tools/cases.hpp"
 #include "cradle/tools/scene/fields.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
 
@@ -41,47 +39,22 @@ void expect_read_back(const Scene& scene) {
   EXPECT_EQ(effective_toml(again), effective);
 }
 
-struct Row {
-  std::size_t line = 0;
-  std::string scene;
-  Strings settings, values;
-};
-
-// Reads values.txt, whose head describes its form.
-std::vector<Row> rows_of_values() {
-  std::istringstream file(contents(test::source_folder + "/tests/tools/scene/values.txt"));
-  std::map<std::string, std::string> texts;
-  for (const BundledScene& bundled : bundled_scenes()) texts['@' + std::string(bundled.name)] = bundled.text;
-  std::string* defined = nullptr;
-  std::vector<Row> rows(1);
-  std::size_t number = 0;
-  for (std::string line; std::getline(file, line);) {
-    Row& row = rows.back();
-    ++number;
-    if (line.empty()) {
-      defined = nullptr;
-      if (!row.values.empty()) rows.emplace_back();
-    } else if (line.starts_with('@') && line.ends_with(" =")) {
-      defined = &texts[line.substr(0, line.size() - 2)];
-    } else if (line.starts_with("=> ")) {
-      row.line = number;
-      row.values.push_back(line.substr(3));
-    } else if (line.starts_with("--set ")) {
-      row.settings.push_back(line.substr(6));
-    } else if (!line.starts_with('#')) {
-      (defined != nullptr ? *defined : row.scene) += line.starts_with('@') ? texts.at(line) : line + "\n";
-    }
-  }
-  return rows;
-}
-
 TEST(Scene, HasTheValuesOfTheTable) {
-  for (const Row& row : rows_of_values()) {
-    SCOPED_TRACE("values.txt:" + std::to_string(row.line));
-    const Scene scene = parse(row.scene, row.settings);
+  for (const tests::ListedCase& listed : tests::cases_in("scene/values.txt")) {
+    SCOPED_TRACE("values.txt:" + std::to_string(listed.number));
+    std::string text;
+    Strings settings, wanted_values;
+    for (const std::string& line : listed.lines)
+      if (line.starts_with("=> "))
+        wanted_values.push_back(line.substr(3));
+      else if (line.starts_with("--set "))
+        settings.push_back(line.substr(6));
+      else
+        text += line + "\n";
+    const Scene scene = parse(text, settings);
     std::string all = "\n";
     for (const auto& [key, text] : values(scene, true)) all.append(key).append(" = ").append(text).append("\n");
-    for (const std::string& wanted : row.values)
+    for (const std::string& wanted : wanted_values)
       if (wanted.starts_with("no "))
         EXPECT_FALSE(has(all, "\n" + wanted.substr(3) + " = "));
       else

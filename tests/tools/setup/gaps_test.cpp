@@ -5,10 +5,8 @@
 #include <concepts>
 #include <cstdint>
 #include <limits>
-#include <memory>
 #include <random>
 #include <string>
-#include <tuple>
 #include <utility>
 #include <vector>
 

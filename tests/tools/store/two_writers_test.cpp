@@ -4,8 +4,7 @@
 #include "cradle/tools/ensemble/ensemble.hpp"
 #include "cradle/tools/support/atomic_file.hpp"
 
-namespace cradle::tests {
-namespace two_writers_test {
+namespace cradle::tests::two_writers_test {
 
 // The second comes while the first one runs its first replica.
 TEST_F(Ensembles, SecondOfTwoThatBeginAfreshIsRefused) {
@@ -61,5 +60,4 @@ TEST_F(Ensembles, FifosAreRefusedByNameAndLinksFollowed) {
   EXPECT_NE(result("a.h5").find("series"), nullptr);
 }
 
-}  // namespace two_writers_test
-}  // namespace cradle::tests
+}  // namespace cradle::tests::two_writers_test

@@ -19,6 +19,15 @@ using Lines = std::vector<std::string>;
 struct ListedCase {
   std::size_t number;  // of its first line
   Lines lines;
+
+  // Of those that begin with their name.
+  const std::string& name() const { return lines.front(); }
+  std::string below_name() const {
+    std::string text;
+    for (std::size_t k = 1; k < lines.size(); ++k) text += lines[k] + "\n";
+    return text;
+  }
+  friend std::ostream& operator<<(std::ostream& out, const ListedCase& of) { return out << of.name(); }
 };
 
 // Of a file below tests/tools.
@@ -44,12 +53,6 @@ inline std::vector<ListedCase> cases_in(const std::string& name) {
     }
   }
   return all;
-}
-
-inline std::string joined(const Lines& lines) {
-  std::string text;
-  for (const std::string& line : lines) text += line + "\n";
-  return text;
 }
 
 }  // namespace cradle::tests

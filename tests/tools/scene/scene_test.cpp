@@ -12,20 +12,12 @@ namespace cradle::tools::scene_test {
 
 using test::has;
 using tests::contents;
-using tests::matches;
 using tests::ProgramTest;
 using tests::refusal;
 using Strings = std::vector<std::string>;
 
-const std::string good = R"([law]
-type = "inelastic"
-restitution = 0.999
-[initial]
-type = "rows"
-particles = 8000
-[run]
-until = 6500
-)";
+const std::string good = "law.type = 'inelastic'\nlaw.restitution = 0.999\ninitial.type = 'rows'\n"
+                         "initial.particles = 8000\nrun.until = 6500\n";
 
 Scene parse(const std::string& text, const Strings& overrides = {}) { return parse_scene(text, "s.toml", overrides); }
 
@@ -42,7 +34,7 @@ void expect_read_back(const Scene& scene) {
 TEST(Scene, HasTheValuesOfTheTable) {
   for (const tests::ListedCase& listed : tests::cases_in("scene/values.txt")) {
     SCOPED_TRACE("values.txt:" + std::to_string(listed.number));
-    std::string text;
+    std::string toml;
     Strings settings, wanted_values;
     for (const std::string& line : listed.lines)
       if (line.starts_with("=> "))
@@ -50,8 +42,8 @@ TEST(Scene, HasTheValuesOfTheTable) {
       else if (line.starts_with("--set "))
         settings.push_back(line.substr(6));
       else
-        text += line + "\n";
-    const Scene scene = parse(text, settings);
+        toml += line + "\n";
+    const Scene scene = parse(toml, settings);
     std::string all = "\n";
     for (const auto& [key, text] : values(scene, true)) all.append(key).append(" = ").append(text).append("\n");
     for (const std::string& wanted : wanted_values)
@@ -107,27 +99,6 @@ TEST(Scene, CheckpointsAreNoPartOfTheEffectiveScene) {
 }
 
 class SceneFiles : public ProgramTest {};
-
-// What is no file is neither waited for nor read without end, whatever command it is given to.
-TEST_F(SceneFiles, AreFiles) {
-  write("list.toml", "law.type = 'sticky'\nrun.until = 1\ninitial = { type = 'list', file = 'fifo' }\n");
-  shell("mkfifo fifo && mkdir out && mkfifo out/files.txt && cradle run collapse3 --quiet -o a.h5", 3);
-  for (const char* command :
-       {"check fifo", "run fifo", "run /dev/zero", "ensemble fifo --replicas 2", "sweep fifo", "trust fifo",
-        "certify fifo", "threshold fifo --vary law.restitution=0:1", "theory fifo", "new b.toml --from fifo",
-        "run list.toml", "run list.toml --set initial.file=/dev/zero", "info fifo", "export fifo --to csv",
-        "diff fifo a.h5", "merge fifo a.h5 -o b.h5", "resume fifo"}) {
-    const tests::Printed refused = shell(std::string("timeout 20 cradle ") + command, 4);
-    EXPECT_TRUE(matches(refused.err, "(fifo|zero): [^:]+ \\(found [^:]*(?:FIFO|device)[^:]*\\): .+").size() == 1)
-        << command << "\n"
-        << refused.err;
-  }
-  EXPECT_TRUE(has(shell("timeout 20 cradle export a.h5 --to out", 2).err, "a folder with other files"));
-  // A file that is given as another one is not shown.
-  write("secret", "root:$6$abcdef:19000:0:99999:7:::\nsecond,line\n");
-  for (const char* command : {"run list.toml --set initial.file=secret", "run secret", "info secret"})
-    EXPECT_FALSE(has(shell(std::string("cradle ") + command).err, "abcdef")) << command;
-}
 
 TEST(Scene, LongTextsAreCutOffInMessages) {
   EXPECT_EQ(refusal(Exit::bad_input, [] { parse("law.type = '" + std::string(5000, 'a') + "'"); }),

@@ -37,13 +37,13 @@ std::ostream& operator<<(std::ostream& out, const CutRun& of) { return out << of
 std::vector<CutRun> cut_runs() {
   std::vector<CutRun> all;
   for (const ListedCase& listed : cases_in("store/resume_scenes.txt")) {
-    std::istringstream head(listed.lines.front());
+    std::istringstream head(listed.name());
     CutRun& one = all.emplace_back();
     head >> one.name;
     if (head >> one.threads >> one.threads_later)
       for (one.precisions.clear(); head >> std::ws && !head.eof();)
         std::getline(head, one.precisions.emplace_back(), ',');
-    one.scene = joined({listed.lines.begin() + 1, listed.lines.end()});
+    one.scene = listed.below_name();
   }
   return all;
 }

@@ -88,25 +88,18 @@ has_header() {
   return 1
 }
 
-# Plotting takes the first of these interpreters that has what it needs.
-has_python_module() {
-  local python
+# first_python CODE: sets `python` to the first of these interpreters that runs it without an error.
+first_python() {
   for python in "${CRADLE_PYTHON:-}" python3 /usr/bin/python3; do
-    if [[ -n $python ]] && "$python" -c "import $1" >/dev/null 2>&1; then return 0; fi
+    if [[ -n $python ]] && "$python" -c "$1" >/dev/null 2>&1; then return 0; fi
   done
   return 1
 }
 
-# plotting_python CODE: whether the interpreter for plotting runs it without an error.
+# plotting_python CODE: whether the interpreter for plotting, which is the first that has what it needs, runs it.
 plotting_python() {
   local python
-  for python in "${CRADLE_PYTHON:-}" python3 /usr/bin/python3; do
-    if [[ -n $python ]] && "$python" -c "import h5py, matplotlib" >/dev/null 2>&1; then
-      "$python" -c "$1" >/dev/null 2>&1
-      return
-    fi
-  done
-  return 1
+  first_python "import h5py, matplotlib" && "$python" -c "$1" >/dev/null 2>&1
 }
 
 # For the module for live simulations.
@@ -118,12 +111,8 @@ sys.exit(not os.path.isfile(os.path.join(sysconfig.get_path('include'), 'Python.
 # The theme of the manual's site; MkDocs finds it by its name.
 has_mkdocs_theme() {
   local python
-  command -v mkdocs >/dev/null || return 1
-  for python in python3 /usr/bin/python3; do
-    if "$python" -c "import sys; from mkdocs.utils import get_theme_names
-sys.exit('$1' not in get_theme_names())" >/dev/null 2>&1; then return 0; fi
-  done
-  return 1
+  command -v mkdocs >/dev/null && first_python "import sys; from mkdocs.utils import get_theme_names
+sys.exit('$1' not in get_theme_names())"
 }
 
 has() {
@@ -133,7 +122,7 @@ has() {
     generator) command -v ninja >/dev/null || command -v make >/dev/null ;;
     header) has_header "$2" ;;
     command) command -v "$2" >/dev/null ;;
-    python) has_python_module "$2" ;;
+    python) local python && first_python "import $2" ;;
     mkdocs-theme) has_mkdocs_theme "$2" ;;
     plotting) plotting_python "import $2" ;;
     python-header) has_python_header ;;

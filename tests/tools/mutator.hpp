@@ -62,17 +62,9 @@ class Mutator {
 
   // Writes impossible sizes, counts and addresses, infinity and nan.
   void number(std::string& bytes, std::size_t at) {
-    static constexpr std::array<std::uint64_t, 11> wrong{0,
-                                                         1,
-                                                         96,
-                                                         255,
-                                                         65535,
-                                                         1ULL << 40,
-                                                         1ULL << 63,
-                                                         ~0ULL,
-                                                         0x7FF0000000000000,
-                                                         0x7FF8000000000000,
-                                                         0xFFEFFFFFFFFFFFFF};
+    static constexpr std::uint64_t infinity = 0x7FF0000000000000, nan = 0x7FF8000000000000;
+    static constexpr std::array<std::uint64_t, 11> wrong{
+        0, 1, 96, 255, 65535, 1ULL << 40, 1ULL << 63, ~0ULL, infinity, nan, 0xFFEFFFFFFFFFFFFF};
     std::uint64_t value = wrong.at(below(wrong.size()));
     const std::size_t width = std::size_t{1} << below(4);
     for (std::size_t k = at; k < std::min(at + width, bytes.size()); ++k, value >>= 8)

@@ -31,7 +31,7 @@ Exit run_trust(const TrustArguments& options) {
   const auto runs = trust(scene, {options.digits, options.both, options.show(), &interrupt});
   Result result = trust_result(scene, runs);
   result.attributes.emplace_back("command", options.command());
-  put_result(result, output, trust_table(runs), options.quiet);
+  put_result(result, output, trust_table(scene, runs), options.quiet);
   return Exit::done;
 }
 

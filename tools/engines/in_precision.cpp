@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <type_traits>
 
 #include "cradle/tools/engines/precision.hpp"
 

@@ -23,6 +23,8 @@
 
 namespace cradle::tools {
 
+/// What the journal of this result would begin with. `otherwise`: what to do where it holds no ensembles.
+JournalHeader header_in(const Result& result, const std::string& file, const char* otherwise);
 /// The study of a journal of replicas. Throws Error (Exit::io) naming the journal.
 Study study_in(const JournalHeader& journal, const std::string& path);
 /// The study of a result file, once the scenes in it are known to be those of its replicas. Throws Error naming it.
@@ -77,7 +79,6 @@ class EnsembleStore {
   void check_identity(const JournalHeader& there, const std::string& path) const;
   JournalHeader header() const;
   std::vector<std::string> rank_journals() const;
-  void journal(const EnsembleRecord& replica);
   void keep_safe();
   void compact();
 

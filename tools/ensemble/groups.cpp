@@ -114,28 +114,22 @@ Group EnsembleState::spread_group(const Spread& spread) const {
 }
 
 Group EnsembleState::replica_group() const {
-  std::vector<std::uint64_t> index, outcome, collisions, merges;
-  std::vector<std::vector<double>> numbers(layout_.numbers.size());
-  for (const std::size_t k : table_.order()) {
-    const ReplicaRow row = table_[k];
-    index.push_back(row.index);
-    outcome.push_back(static_cast<std::uint64_t>(row.outcome));
-    collisions.push_back(row.collisions);
-    merges.push_back(row.merges);
-    for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i].push_back(row.numbers[i]);
-  }
+  std::vector<ReplicaRow> rows;
+  for (const std::size_t k : table_.order()) rows.push_back(table_[k]);
+  const auto of_rows = [&](auto of) { return numbers_of(rows, of); };
   std::string outcomes;
   for (std::size_t k = 0; k < outcome_count; ++k)
     outcomes += fmt::format("{}{} {}", k == 0 ? "" : ", ", k, run_ends[k].text);
   Group group{name("replicas"),
               {},
-              {{"index", "1", "initial.replica of the run", std::move(index)},
-               {"outcome", "1", outcomes, std::move(outcome)},
-               {"collisions", "1", "collisions until the end", std::move(collisions)},
-               {"merges", "1", "merges until the end", std::move(merges)}}};
-  for (std::size_t i = 0; i < numbers.size(); ++i) {
+              {{"index", "1", "initial.replica of the run", of_rows(&ReplicaRow::index)},
+               {"outcome", "1", outcomes,
+                of_rows([](const ReplicaRow& row) { return static_cast<std::uint64_t>(row.outcome); })},
+               {"collisions", "1", "collisions until the end", of_rows(&ReplicaRow::collisions)},
+               {"merges", "1", "merges until the end", of_rows(&ReplicaRow::merges)}}};
+  for (std::size_t i = 0; i < layout_.numbers.size(); ++i) {
     group.columns.push_back(layout_.numbers[i]);
-    group.columns.back().values = std::move(numbers[i]);
+    group.columns.back().values = of_rows([i](const ReplicaRow& row) { return row.numbers[i]; });
   }
   return group;
 }

@@ -6,7 +6,6 @@
 #include <stdexcept>
 
 #include "cradle/tools/record/rows.hpp"
-#include "cradle/tools/scene/scene.hpp"
 
 namespace cradle::tools {
 

@@ -9,34 +9,28 @@
 
 #include "cradle/tools/proof/certify.hpp"
 #include "cradle/tools/support/checksum.hpp"
+#include "cradle/tools/support/table.hpp"
 
 namespace cradle::tools {
 
 namespace {
 
-const char* question(Check check) {
-  switch (check) {
-  case Check::neighbours:
-    return "those that meet are neighbours";
-  case Check::closing:
-    return "they approach each other: the second (closing speed) exceeds the first";
-  case Check::later:
-    return "they meet after the last collision of either: the second time exceeds the first";
-  case Check::side:
-    return "on which side of a threshold of the law they meet: first against second";
-  case Check::gap:
-    return "the gap between them is positive: the second exceeds the first";
-  case Check::before:
-    return "its last collision was before: the second time exceeds the first";
-  case Check::reaches:
-    return "it falls on the wall: the square of its speed there, the second, exceeds the first";
-  case Check::turns:
-    return "the gap stays open between two collisions under gravity: the second exceeds the first";
-  case Check::agreement:
-    return "the run has the number that is proved: first against second";
-  }
-  return "";
-}
+struct Question {
+  Check type;
+  const char* text;
+};
+constexpr Question questions[] = {
+    {Check::neighbours, "those that meet are neighbours"},
+    {Check::closing, "they approach each other: the second (closing speed) exceeds the first"},
+    {Check::later, "they meet after the last collision of either: the second time exceeds the first"},
+    {Check::side, "on which side of a threshold of the law they meet: first against second"},
+    {Check::gap, "the gap between them is positive: the second exceeds the first"},
+    {Check::before, "its last collision was before: the second time exceeds the first"},
+    {Check::agreement, "the run has the number that is proved: first against second"},
+    {Check::reaches, "it falls on the wall: the square of its speed there, the second, exceeds the first"},
+    {Check::turns, "the gap stays open between two collisions under gravity: the second exceeds the first"},
+};
+static_assert(rows_in_order(questions));
 
 std::string near(const std::string& number) { return number.size() > 24 ? number.substr(0, 24) + "..." : number; }
 
@@ -83,7 +77,8 @@ std::string doubt_text(const ReportedDoubt& d) {
   if (d.left >= 0)
     where += d.left == d.right ? fmt::format(", particle {}", d.left)
                                : fmt::format(", particles {} and {}", d.left, d.right);
-  std::string text = fmt::format("{}: {} whether {}", where, d.refuted ? "it is not so" : "open", question(d.check));
+  std::string text = fmt::format("{}: {} whether {}", where, d.refuted ? "it is not so" : "open",
+                                 questions[static_cast<std::size_t>(d.check)].text);
   if (d.check != Check::neighbours)
     text += fmt::format(" ({}; {}; known to {:.2g})", near(d.first), near(d.second), d.width);
   return text;
@@ -140,6 +135,11 @@ std::string certificate_text(const Certified& run) {
     if (run.proved() && last.over)
       text += "  after it  no particles approach each other: there are no more collisions\n";
   }
+  return text;
+}
+
+std::string attempts_text(const Certified& run) {
+  std::string text;
   for (const Attempt& a : run.attempts)
     text += fmt::format("  {:.1f} s in {} and {}: {}\n", a.seconds, a.precision, a.digits,
                         a.doubt.empty() ? "proved" : a.doubt);

@@ -67,8 +67,9 @@ void check_certifiable(const Scene& scene);
 /// has the numbers that are proved of it (Exit::lost), which no scene can bring about.
 Certified certify(const Scene& scene, const CertifyOptions& options);
 
-/// A report that can be quoted.
+/// A report that can be quoted, and how long each attempt took.
 std::string certificate_text(const Certified& run);
+std::string attempts_text(const Certified& run);
 /// The run's result with the certificate in it; where the proof ended, what is proved up to there.
 Result certified_result(Certified run);
 

@@ -212,10 +212,12 @@ std::vector<Trusted> trust(const Scene& scene, const TrustOptions& options) {
   return table;
 }
 
-std::string trust_table(const std::vector<Trusted>& runs) {
-  std::string text = fmt::format("{:<18}{:<10}{:>24}{:>14}{:>13}{:>10}{:>10}{:>9}{:>9}{:>16}\n", "precision", "in",
-                                 "collisions right until t", "collision", "counts until", "energy", "front", "t_c",
-                                 "seconds", "proved");
+std::string trust_table(const Scene& scene, const std::vector<Trusted>& runs) {
+  const auto row = [](const auto&... cells) {
+    return fmt::format("{:<18}{:<13}{:>24}{:>12}{:>14}{:>8}{:>8}{:>8}{:>10}{:>22}\n", cells...);
+  };
+  std::string text = row("precision", "coordinates", "collisions right until t", "collisions", "counts until", "energy",
+                         "front", "t_c", "seconds", "proved");
   for (const auto& run : runs) {
     const bool reference = &run == &runs.back();
     const auto digits = [&](double d) { return reference || d < 0 ? std::string("-") : fmt::format("{:.1f}", d); };
@@ -226,14 +228,18 @@ std::string trust_table(const std::vector<Trusted>& runs) {
     const auto upto = reference    ? std::string("(reference)")
                       : run.to_end ? fmt::format("{:.8g} (end)", run.time)
                                    : fmt::format("{:.8g}", run.time);
-    text += fmt::format("{:<18}{:<10}{:>24}{:>14}{:>13.8g}{:>10}{:>10}{:>9}{:>9.2f}{:>16}\n", run.precision,
-                        run.coordinates, upto, run.collisions, run.counts_time, last(run.energy_digits),
-                        last(run.front_digits), digits(run.collapse_digits), run.seconds, proved);
+    text += row(run.precision, run.coordinates, upto, run.collisions, fmt::format("{:.8g}", run.counts_time),
+                last(run.energy_digits), last(run.front_digits), digits(run.collapse_digits),
+                fmt::format("{:.2f}", run.seconds), proved);
   }
   text += "\nTimes are those of samples (output.series). Right: the same sequence of collisions at every particle as "
-          "the reference.\nenergy (against that at the start), front: digits shared with the reference at the last "
-          "sample, of those that the type has; t_c: of the collapse time.\nproved: until when these collisions are "
-          "proved to be those of the exact system (cradle certify).\n";
+          "the reference; collisions: how many these are.\ncounts: numbers of collisions and merges. energy (against "
+          "that at the start), front: digits shared with the reference at the last sample, of those that the type "
+          "has; t_c: of the collapse time.\nproved: until when these collisions are proved to be those of the exact "
+          "system (cradle certify).\n";
+  if (!scene.run.stop_gap && status_of_text(runs.back().outcome) == Exit::collapse)
+    text += "Each run ends where its own precision has settled the collapse: with a run.stop_gap, 1e-20 say, all of "
+            "them end at the same gap and can be compared up to there.\n";
   return text;
 }
 

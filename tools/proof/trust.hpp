@@ -40,7 +40,7 @@ struct TrustOptions {
 std::vector<Trusted> trust(const Scene& scene, const TrustOptions& options);
 
 /// A table for people, and one for files.
-std::string trust_table(const std::vector<Trusted>& runs);
+std::string trust_table(const Scene& scene, const std::vector<Trusted>& runs);
 Result trust_result(const Scene& scene, const std::vector<Trusted>& runs);
 
 }  // namespace cradle::tools

@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <type_traits>
 
 #include "cradle/precision/bin_float.hpp"
 #include "cradle/tools/engines/in_precision.hpp"
 #include "cradle/tools/record/rows.hpp"
+#include "cradle/tools/support/table.hpp"
 
 namespace cradle::tools {
 
@@ -180,16 +180,9 @@ std::string exhausted_warning(const std::string& time, std::uint64_t collisions,
 
 // How a run ended, from the engine's status; `order_lost` is from the account.
 RunEnd end_of(Status status, bool order_lost) {
-  switch (status) {
-  case Status::reached:
-    break;
-  case Status::collapsed:
-    return RunEnd::collapsed;
-  case Status::exhausted:
-    return RunEnd::exhausted;
-  case Status::interrupted:
-    return RunEnd::interrupted;
-  }
+  if (status == Status::collapsed) return RunEnd::collapsed;
+  if (status == Status::exhausted) return RunEnd::exhausted;
+  if (status == Status::interrupted) return RunEnd::interrupted;
   return order_lost ? RunEnd::order_lost : RunEnd::reached;
 }
 
@@ -223,35 +216,29 @@ double before_last_collision(const Scene& scene, const AnyEngine& engine) {
                         -std::numeric_limits<double>::infinity());
 }
 
+struct GuardRow {
+  Guard type;
+  const char* broken;
+};
+constexpr GuardRow guard_rows[] = {
+    {Guard::order, "order: two particles have changed places, the gap is less than rounding can make it"},
+    {Guard::wall, "wall: a particle is beyond it"},
+    {Guard::past, "past: the last collision is not between the one before and the time of the check"},
+    {Guard::energy, "energy: the sum over all particles is not what the ledger of losses leaves"},
+    {Guard::momentum, "momentum: not what it was at the start"},
+    {Guard::closure, "closure: gaps or closing speeds do not add up to what the ends of the line give"},
+};
+static_assert(rows_in_order(guard_rows));
+
 }  // namespace
 
 std::string guard_message(const ReportedGuard& g, const ReportedAccount& account, const Run& run) {
-  const char* what = "";
-  switch (g.guard) {
-  case Guard::order:
-    what = "order: two particles have changed places, the gap is less than rounding can make it";
-    break;
-  case Guard::wall:
-    what = "wall: a particle is beyond it";
-    break;
-  case Guard::past:
-    what = "past: the last collision is not between the one before and the time of the check";
-    break;
-  case Guard::energy:
-    what = "energy: the sum over all particles is not what the ledger of losses leaves";
-    break;
-  case Guard::momentum:
-    what = "momentum: not what it was at the start";
-    break;
-  case Guard::closure:
-    what = "closure: gaps or closing speeds do not add up to what the ends of the line give";
-    break;
-  }
-  const std::string broken = fmt::format("stopped by the guard of {} (found {:.6g}, bound {:.6g}, at t = {}{}): ", what,
-                                         g.found, g.bound, g.time.text(),
-                                         g.guard == Guard::wall ? fmt::format(", particle {}", g.particle)
-                                         : g.particle < 0       ? ""
-                                                                : ", " + place(g.particle));
+  const std::string broken =
+      fmt::format("stopped by the guard of {} (found {:.6g}, bound {:.6g}, at t = {}{}): ",
+                  guard_rows[static_cast<std::size_t>(g.guard)].broken, g.found, g.bound, g.time.text(),
+                  g.guard == Guard::wall ? fmt::format(", particle {}", g.particle)
+                  : g.particle < 0       ? ""
+                                         : ", " + place(g.particle));
   // A gap to a wall that has just closed is not in the account.
   if (run.coordinates == Coordinates::absolute &&
       (account.order_lost + account.unresolved > 0 || g.guard == Guard::wall))

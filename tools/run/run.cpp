@@ -3,7 +3,6 @@
 #include "cradle/tools/record/schedule.hpp"
 #include "cradle/tools/run/clusters.hpp"
 #include "cradle/tools/run/scene_run.hpp"
-#include "cradle/tools/scene/scene.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
 #include "cradle/tools/support/version.hpp"
 

@@ -2,19 +2,14 @@
 #include "cradle/tools/run/scene_run.hpp"
 
 #include <chrono>
-#include <memory>
-#include <optional>
-#include <string>
 #include <tuple>
 #include <utility>
-#include <vector>
 
-#include "cradle/tools/engines/any_engine.hpp"
 #include "cradle/tools/engines/precision.hpp"
 #include "cradle/tools/record/measurements.hpp"
-#include "cradle/tools/record/schedule.hpp"
 #include "cradle/tools/run/report.hpp"
 #include "cradle/tools/run/run_guards.hpp"
+#include "cradle/tools/run/run_sample.hpp"
 #include "cradle/tools/theory/cost.hpp"
 
 namespace cradle::tools {
@@ -31,34 +26,6 @@ struct SavedTimes {
     return std::tie(self.time, self.meant, self.rounded, self.at_collision, self.inspected);
   }
 };
-
-// The sample that an observer receives at an output time. `at_collision`: the run ends at this time, with a collision.
-RunSample run_sample(const Scene& scene, const Schedule& plan, const AnyEngine& engine, const Moment& now,
-                     bool at_collision) {
-  const SampledState& state = now.state();
-  const Number& time = now.time.exact;
-  const auto text = [](const std::optional<Number>& x) { return x ? x->text() : std::string(); };
-  const auto wall = [](const SampledState::Wall& of) {
-    return SampledWall{of.collisions, of.given.text(), of.momentum.text(), of.dissipated.text()};
-  };
-  RunSample sample{.time = {now.time.meant.value, time.text()},
-                   .epsilon = engine.epsilon(),
-                   .requested = at_collision ? std::vector{RequestedTime{Decimal(time.text()), true, false, true}}
-                                             : plan.requested(scene, time),
-                   .of_series = plan.series().hold(time),
-                   .at_collision = at_collision,
-                   .counts = state.counts,
-                   .energy = state.energy.text(),
-                   .front_left = text(state.front_left),
-                   .front_right = text(state.front_right),
-                   .particles = {},
-                   .walls = {wall(state.walls[0]), wall(state.walls[1])}};
-  using enum Moment::Column;
-  if (!at_collision && plan.snapshots().hold(time))
-    sample.particles = {now.range().first,  now.range().second, now.index(),
-                        now.column_text(x), now.column_text(v), now.column_text(m)};
-  return sample;
-}
 
 class EngineRun final : public SceneRun {
  public:
@@ -120,7 +87,11 @@ class EngineRun final : public SceneRun {
   void put_rows() override { measurements_.put_rows(engine_->counts(), sink_); }
   void save(StateSink& to) override {
     require_in_progress();
-    save_state(to);
+    cradle::save(to, std::pair(shape(), precision_name(scene_.run)));
+    engine_->save(to);
+    const auto inspected = inspected_ ? std::optional(inspected_->text()) : std::nullopt;
+    cradle::save(to, SavedTimes{time_.exact.text(), time_.meant.text(), time_.meant.value, at_collision_, inspected});
+    cradle::save(to, *this);
   }
   void load(StateSource& from) override {
     try {
@@ -232,19 +203,11 @@ class EngineRun final : public SceneRun {
 
   // ---- what goes to the sink
   std::string shape() const { return engine_->shape() + state_shape<SavedTimes>() + state_shape<EngineRun>(); }
-  void save_state(StateSink& to) const {
-    cradle::save(to, std::pair(shape(), precision_name(scene_.run)));
-    engine_->save(to);
-    const auto inspected = inspected_ ? std::optional(inspected_->text()) : std::nullopt;
-    cradle::save(to, SavedTimes{time_.exact.text(), time_.meant.text(), time_.meant.value, at_collision_, inspected});
-    cradle::save(to, *this);
-  }
   // Gives it the recorded rows and, from time to time, the state.
   void keep(const Number& time, RunIs run_is = RunIs::in_progress) {
     put_rows();
-    const RunStatus now = guards_.status(plan_.meant(time).meant.value);
-    sink_.keep(
-        now, [this](StateSink& to) { save_state(to); }, run_is);
+    const auto saved = [this](StateSink& to) { save(to); };
+    sink_.keep(guards_.status(plan_.meant(time).meant.value), saved, run_is);
   }
 
   // ---- what is recorded
@@ -263,7 +226,7 @@ class EngineRun final : public SceneRun {
     measurements_.record(now, sink_);
     guards_.check(now, !(time < plan_.last()));
     inspected_ = time;
-    if (options_.observer != nullptr) notify_observer(now, false);
+    notify_observer(now, false);
     sink_.check_clock();
     if (sink_.due())
       keep(time);
@@ -272,14 +235,7 @@ class EngineRun final : public SceneRun {
     return true;
   }
   void notify_observer(const Moment& now, bool at_collision) {
-    options_.observer->sample(run_sample(scene_, plan_, *engine_, now, at_collision));
-  }
-  // The last state of a run that ends early.
-  void record_last(const Moment& now) {
-    guards_.require_between_walls(now);
-    if (options_.observer != nullptr) notify_observer(now, true);
-    guards_.require_held(now, false);
-    measurements_.record_last(now, sink_);
+    if (options_.observer != nullptr) options_.observer->sample(run_sample(scene_, plan_, *engine_, now, at_collision));
   }
 
   void end_with(Status status) {
@@ -288,7 +244,12 @@ class EngineRun final : public SceneRun {
     if (reached || interrupted) keep(end, reached ? RunIs::over : RunIs::interrupted);
     const std::unique_ptr<Moment> moment = engine_->moment(reached ? plan_.meant(end) : RunTime(end));
     const Moment& now = *moment;
-    if (!reached && !(interrupted && sink_.for_file())) record_last(now);
+    if (!reached && !(interrupted && sink_.for_file())) {  // its last state
+      guards_.require_between_walls(now);
+      notify_observer(now, true);
+      guards_.require_held(now, false);
+      measurements_.record_last(now, sink_);
+    }
     RunEnding ending(scene_, *engine_, now, status);
     put_rows();
     ending.outcome.summary = measurements_.finish(now, sink_);

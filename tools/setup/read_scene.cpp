@@ -179,7 +179,9 @@ SceneText text_of(const std::string& path_or_name) {
                   Exit::io);
     if (text.starts_with("\x89HDF"))
       throw Error({path_or_name, 0, {}}, "a result, not a scene", "HDF5",
-                  "give the scene file, or inspect it with `cradle info " + path_or_name + "`");
+                  fmt::format("give the scene file, or the csv/scene.toml that `cradle export {0} --to csv` writes; "
+                              "`cradle info {0}` shows what is in it",
+                              path_or_name));
     return {std::move(text), path_or_name};
   }
   for (const BundledScene& scene : bundled_scenes())

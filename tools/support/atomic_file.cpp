@@ -37,17 +37,14 @@ std::string hidden_beside(const std::string& path, const std::string& ending) {
   return (fs::path(path).parent_path() / ("." + fs::path(path).filename().string() + ending)).string();
 }
 
-const char* kind_of(fs::file_type type) {
-  switch (type) {
-  case fs::file_type::directory:
-    return "a folder of that name";
-  case fs::file_type::fifo:
-    return "a FIFO";
-  case fs::file_type::socket:
-    return "a socket";
-  default:
-    return "a device";
-  }
+// What is there in place of a file; empty for a file and where there is nothing.
+std::string_view instead_of_file(const fs::file_status& found) {
+  const fs::file_type type = found.type();
+  if (!fs::exists(found) || type == fs::file_type::regular || type == fs::file_type::unknown) return {};
+  return type == fs::file_type::directory ? "a folder of that name"
+         : type == fs::file_type::fifo    ? "a FIFO"
+         : type == fs::file_type::socket  ? "a socket"
+                                          : "a device";
 }
 
 bool same_file(int descriptor, const std::string& name) {
@@ -112,8 +109,8 @@ std::string file_behind(const std::string& path) {
       target = target.parent_path() / fs::read_symlink(target, error);
       continue;
     }
-    if (fs::exists(found) && found.type() != fs::file_type::regular && found.type() != fs::file_type::unknown)
-      throw Error({path, 0, ""}, "cannot be written", kind_of(found.type()), "give another -o FILE", Exit::io);
+    if (const std::string_view other = instead_of_file(found); !other.empty())
+      throw Error({path, 0, ""}, "cannot be written", other, "give another -o FILE", Exit::io);
     return target.string();
   }
   throw Error({path, 0, ""}, "cannot be written", "links that lead nowhere", "give another -o FILE", Exit::io);
@@ -121,9 +118,7 @@ std::string file_behind(const std::string& path) {
 
 std::string_view instead_of_file(const std::string& path) {
   std::error_code error;
-  const fs::file_status found = fs::status(path, error);
-  if (!fs::exists(found) || found.type() == fs::file_type::regular || found.type() == fs::file_type::unknown) return {};
-  return kind_of(found.type());
+  return instead_of_file(fs::status(path, error));
 }
 
 void write_all(int descriptor, std::array<std::string_view, 3> parts, const std::string& path) {

@@ -196,21 +196,17 @@ Result threshold_result(const ThresholdProblem& question, const Threshold& found
   result.attributes = provenance(scene, precision_name(scene.run), "threshold of " + question.key());
   result.attributes.emplace_back("kind", std::string(kind));
   result.attributes.emplace_back("identity", question.identity());
-  std::vector<double> value;
-  std::vector<std::string> digits, outcome, how;
-  std::vector<std::uint64_t> collisions, merges;
-  for (const RunAt& run : found.runs) {
-    value.push_back(Decimal(run.value).value), digits.push_back(run.value), outcome.push_back(run.outcome);
-    collisions.push_back(run.collisions), merges.push_back(run.merges), how.push_back(run.how);
-  }
+  const auto of_runs = [&](auto of) { return numbers_of(found.runs, of); };
   Group group{kind,
               {{"key", question.key()}, {"compared", std::string(question.what().text)}, {"command", command}},
-              {{"value", "1", "of the key that varies, rounded", value},
-               {"value_digits", "1", "the same, all digits", digits},
-               {"outcome", "1", "of the run with this value", outcome},
-               {"collisions", "1", "made in the run; with a closed form, until the outcome was decided", collisions},
-               {"merges", "1", "made in the run", merges},
-               {"how", "1", "type of the run, or closed form: proved without one", how}}};
+              {{"value", "1", "of the key that varies, rounded",
+                of_runs([](const RunAt& run) { return Decimal(run.value).value; })},
+               {"value_digits", "1", "the same, all digits", of_runs(&RunAt::value)},
+               {"outcome", "1", "of the run with this value", of_runs(&RunAt::outcome)},
+               {"collisions", "1", "made in the run; with a closed form, until the outcome was decided",
+                of_runs(&RunAt::collisions)},
+               {"merges", "1", "made in the run", of_runs(&RunAt::merges)},
+               {"how", "1", "type of the run, or closed form: proved without one", of_runs(&RunAt::how)}}};
   for (const auto& [name, end] : {std::pair("low", &found.low), std::pair("high", &found.high)}) {
     const std::string prefix(name);
     append(group.attributes, {{prefix, Decimal(end->run.value).value},

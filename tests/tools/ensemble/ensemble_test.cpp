@@ -1,8 +1,6 @@
 // The numbers in files of ensembles: statistics compared with those of single runs, how replicas ended, replicas that
 // collapse or fail.
 
-#include "cradle/tools/ensemble/ensemble.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,6 +9,7 @@
 #include <stdexcept>
 
 #include "cradle/tests/tools/ensemble/ensembles.hpp"
+#include "cradle/tests/tools/ensemble/failing_replicas.hpp"
 
 namespace cradle::tests::ensemble_test {
 
@@ -89,12 +88,6 @@ TEST_P(StatisticsOf, ReplicasAreThoseOfTheRunsOneByOne) {
 INSTANTIATE_TEST_SUITE_P(Scenes, StatisticsOf, testing::Values("shock", "wet"),
                          [](const auto& parameter) { return std::string(parameter.param); });
 
-TEST_F(Ensembles, OneReplicaAloneIsTheRunOfThatReplica) {
-  run("ensemble shock.toml --first 17 --replicas 1 -o alone.h5");
-  run("run shock.toml --quiet --force --set initial.replica=17 -o run.h5");
-  EXPECT_EQ(numbers(read("alone.h5"), "ensemble/series/energy", "mean"), numbers(read("run.h5"), "series", "energy"));
-}
-
 TEST_F(Ensembles, SeedIsPartOfTheScene) {
   run("ensemble shock.toml --replicas 3 --seed 1 -o a.h5");
   run("ensemble shock.toml --replicas 3 --seed 2 -o b.h5");
@@ -143,20 +136,10 @@ TEST_F(Ensembles, ValuesAreCountedInBinsWhereRequested) {
 
 TEST_F(Ensembles, FailedReplicasAreListedAndHarmNoOther) {
   const Scene shocks = scene("shock.toml");
-  const auto fails = [](const Scene& replica) { return replica.initial.replica % 5 == 2; };
   tools::EnsembleOptions options;
   options.replicas = {0, 23};
   options.progress = tools::ProgressLine::Show::never;
-  options.runner = [&](const Scene& replica, const tools::RunOptions& how) -> RunOutcome {
-    Scene changed = replica;
-    if (fails(replica)) {  // an initial state that throws: particles of a list out of order
-      changed.initial = {};
-      changed.initial.type = tools::InitialType::list;
-      changed.initial.x = {"1", "0"};
-      changed.initial.v = {"0", "0"};
-    }
-    return tools::run_scene(changed, how);
-  };
+  options.runner = run_or_fail;
   for (const unsigned threads : {1U, 2U}) {
     options.threads = threads;
     const auto end = tools::run_ensemble(shocks, options, path(fmt::format("failed-{}.h5", threads)));

@@ -20,17 +20,9 @@ using tools::Result;
 using tools::Scene;
 
 inline constexpr const char* shock = R"(
-[law]
-type = "inelastic"
-restitution = 0.99
-cutoff = 1e-5
-[initial]
-type = "rows"
-particles = 300
-speed = 0.5
-perturbation = 0.05
-[run]
-until = 200
+law = { type = "inelastic", restitution = 0.99, cutoff = 1e-5 }
+initial = { type = "rows", particles = 300, speed = 0.5, perturbation = 0.05 }
+run.until = 200
 [output]
 series = { points = 50 }
 snapshots = [100]
@@ -44,39 +36,22 @@ counting = { from = 40, range = [0.01, 10], every = 50, cluster_gap = 0.1 }
 
 // Two of the three particles collapse before `until`, at a time that depends on the replica.
 inline constexpr const char* collapse = R"(
-[law]
-type = "inelastic"
-restitution = 0.05
-[initial]
-type = "rows"
-particles = 4
-speed = 1
-perturbation = 0.4
-[run]
-until = 2
-collapse = "stop"
-[output]
-series = { points = 41 }
-profiles = { times = [0.5, 1.5], bins = 2, range = [-2, 2] }
+law = { type = "inelastic", restitution = 0.05 }
+initial = { type = "rows", particles = 4, speed = 1, perturbation = 0.4 }
+run = { until = 2, collapse = "stop" }
+output.series = { points = 41 }
+output.profiles = { times = [0.5, 1.5], bins = 2, range = [-2, 2] }
 )";
 
 // Has two columns for clusters (left and right), empty until there are clusters; and an average over the interaction
 // zone.
 inline constexpr const char* wet = R"(
-[law]
-type = "wet"
-loss = 0.05
-[initial]
-type = "rows"
-particles = 400
-speed = 0.5
-perturbation = 0.05
-[run]
-until = 380
-[output]
-series = { points = 20 }
-profiles = { times = [300], bins = 10, range = [-20, 20] }
-zone = { from = 200, samples = 16, bins = 8 }
+law = { type = "wet", loss = 0.05 }
+initial = { type = "rows", particles = 400, speed = 0.5, perturbation = 0.05 }
+run.until = 380
+output.series = { points = 20 }
+output.profiles = { times = [300], bins = 10, range = [-20, 20] }
+output.zone = { from = 200, samples = 16, bins = 8 }
 )";
 
 constexpr std::uint64_t endless_replicas = 1'000'000'000'000;
@@ -89,7 +64,6 @@ class Ensembles : public ProgramTest {
     write("collapse.toml", collapse);
   }
 
-  Result result(const std::string& name) const { return read(name); }
   Scene scene(const std::string& name) const { return tools::read_scene(path(name)); }
 
   void run(const std::string& command, int status = 0) const { shell("cradle " + command, status); }

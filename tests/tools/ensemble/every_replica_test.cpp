@@ -8,14 +8,14 @@ namespace cradle::tests::every_replica_test {
 
 TEST_F(Ensembles, KeepWhatEveryReplicaRecords) {
   run("ensemble shock.toml --replicas 5 --set output.every_replica=true -o e.h5");
-  const Result all = result("e.h5");
+  const Result all = read("e.h5");
   for (const std::string table : {"snapshots/0000", "profiles/0000", "profiles/0001"}) {
     const tools::Group& kept = *all.find("replicas/" + table);
     const auto replica = std::get<std::vector<std::uint64_t>>(column(kept, "replica").values);
     std::size_t row = 0;
     for (std::uint64_t k = 0; k < 5; ++k) {
       run("run shock.toml --quiet --force -o r.h5 --set initial.replica=" + std::to_string(k));
-      const Result alone = result("r.h5");
+      const Result alone = read("r.h5");
       const tools::Group& own = *alone.find(table);
       EXPECT_EQ(kept.columns.size(), own.columns.size() + 1);
       EXPECT_EQ(attribute<double>(kept.attributes, "time", ""), attribute<double>(own.attributes, "time", ""));
@@ -34,7 +34,7 @@ TEST_F(Ensembles, KeepWhatEveryReplicaRecords) {
     EXPECT_EQ(row, replica.size());
   }
   run("ensemble shock.toml --replicas 5 -o plain.h5");
-  for (const tools::Group& group : result("plain.h5").groups)
+  for (const tools::Group& group : read("plain.h5").groups)
     EXPECT_FALSE(has(group.name, "replicas/snapshots") || has(group.name, "replicas/profiles")) << group.name;
 }
 
@@ -46,16 +46,16 @@ TEST_F(Ensembles, KeepEveryReplicaWhereTheyAreKilled) {
 }
 
 TEST_F(Ensembles, OfASweepKeepEveryReplicaToo) {
-  run("sweep collapse.toml --vary law.restitution=0.05,0.9 --replicas 3 --set output.every_replica=true "
-      "--set output.snapshots=[0.25,1.75] -o s.h5");
-  const Result sweep = result("s.h5");
+  const std::string command = "sweep collapse.toml --vary law.restitution=0.05,0.9 --replicas 3 --set "
+                              "output.every_replica=true --set output.snapshots=[0.25,1.75] -o s.h5";
+  run(command);
+  const Result sweep = read("s.h5");
   for (const std::string point : {"points/0000/", "points/0001/"}) {
     const auto replica = numbers(sweep, point + "replicas/snapshots/0000", "replica");
     EXPECT_EQ(replica.front(), 0);
     EXPECT_EQ(replica.back(), 2);
   }
-  run("sweep collapse.toml --vary law.restitution=0.05,0.9 --replicas 3 --set output.every_replica=true "
-      "--set output.snapshots=[0.25,1.75] -o s.h5");
+  run(command);
 }
 
 }  // namespace cradle::tests::every_replica_test

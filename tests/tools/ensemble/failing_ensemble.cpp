@@ -1,5 +1,4 @@
-// An ensemble as in `cradle ensemble`, also under MPI, in which every fifth replica fails: its particles are out of
-// order, which throws.
+// An ensemble as in `cradle ensemble`, also under MPI, in which every fifth replica fails.
 //   failing_ensemble SCENE REPLICAS FILE
 
 #include <fmt/format.h>
@@ -7,7 +6,7 @@
 #include <exception>
 #include <string>
 
-#include "cradle/tools/ensemble/ensemble.hpp"
+#include "cradle/tests/tools/ensemble/failing_replicas.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
 
 int main(int, char** arguments) {
@@ -17,16 +16,7 @@ int main(int, char** arguments) {
     const auto processes = make_processes(interrupt);
     EnsembleOptions options;
     options.replicas = {0, std::stoull(arguments[2])};
-    options.runner = [](const Scene& replica, const RunOptions& how) {
-      Scene changed = replica;
-      if (replica.initial.replica % 5 == 2) {
-        changed.initial = {};
-        changed.initial.type = InitialType::list;
-        changed.initial.x = {"1", "0"};
-        changed.initial.v = {"0", "0"};
-      }
-      return run_scene(changed, how);
-    };
+    options.runner = cradle::tests::run_or_fail;
     const EnsembleOutcome end = run_study(ensemble_of(read_scene(arguments[1])), options, arguments[3], *processes);
     fmt::print("{}\n", end.outcome);
     return static_cast<int>(end.status);

@@ -1,12 +1,7 @@
 // Pictures: every kind is made from a small run, without a display, as PNG and as SVG, and twice with the same bytes.
 // The contents of a file decide which pictures it has: the names that the program prints are those of pictures.txt.
 
-#include <iterator>
-#include <sstream>
-#include <string>
-#include <vector>
-
-#include "cradle/tests/tools/program.hpp"
+#include "cradle/tests/tools/cases.hpp"
 
 namespace cradle::tests::plots_test {
 
@@ -18,16 +13,14 @@ struct Kind {
 };
 
 std::vector<Kind> kinds() {
-  std::istringstream file(contents(test::source_folder + "/tests/tools/plot/pictures.txt"));
   std::vector<Kind> all;
-  for (std::string line; std::getline(file, line);) {
-    std::istringstream words(line);
-    Kind kind;
-    if (!(words >> kind.status >> kind.name)) continue;  // a comment
-    kind.others.assign(std::istream_iterator<std::string>(words), {});
-    while (std::getline(file, line) && line.ends_with('\\')) kind.command += line.substr(0, line.size() - 1);
-    kind.command += line;
-    all.push_back(kind);
+  for (const ListedCase& listed : cases_in("plot/pictures.txt")) {
+    std::istringstream head(listed.name());
+    Kind& kind = all.emplace_back();
+    head >> kind.status >> kind.name;
+    kind.others.assign(std::istream_iterator<std::string>(head), {});
+    kind.command = listed.below_name();
+    kind.command.pop_back();  // the end of the last line
   }
   return all;
 }

@@ -2,7 +2,6 @@
 // proofs end: tests/tools/outputs.txt. What is refused: tests/tools/messages.txt.)
 #include <cmath>
 #include <string>
-#include <vector>
 
 #include "cradle/tests/tools/program.hpp"
 

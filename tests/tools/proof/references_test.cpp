@@ -7,6 +7,7 @@
 #include <random>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "cradle/core/initial/ring.hpp"
 #include "cradle/tests/precision/reference_gas.hpp"
@@ -46,12 +47,6 @@ std::string number_of(Random& random, std::int64_t n, int places) {
   return (negative ? "-" : "") + digits;
 }
 
-// A scene with its particles.
-struct Drawn {
-  Scene scene;
-  bool roots = false;  // not all of it is rational
-};
-
 struct LawText {
   std::string law, run;
   bool roots = false;
@@ -78,6 +73,15 @@ LawText draw_law(Random& random, bool walls = false) {
   return {law + cutoff + fmt::format(", cutoff_exponent = {}}}\n", one_of(random, {"1", "4", "0.5", "2.5", "\"3.0\""})),
           "", true};
 }
+// A scene with its particles.
+struct Drawn {
+  Scene scene;
+  bool roots = false;  // not all of it is rational
+};
+Drawn with_law(const LawText& law, const std::string& state, const std::string& times, bool roots = false) {
+  return {parse_scene(law.law + state + law.run + times, "drawn", {}), law.roots || roots};
+}
+
 // One wall or two beside particles from `first` to `last`; of two none moves inwards.
 std::string draw_walls(Random& random, double first, double last) {
   const std::int64_t which = below(random, 3);
@@ -110,54 +114,43 @@ std::string draw_times(Random& random) {
 }
 
 // Places increase by random gaps; the kind of list decides which particles move, and the masses.
-void draw_particles(Random& random, Initial& initial) {
+std::string draw_particles(Random& random) {
   enum Kind { any, groups, lattice, central, few_move };
   const Kind kind = one_of(random, {any, any, groups, groups, lattice, central, few_move});
   const std::int64_t particles = 2 + below(random, 8);
   const bool masses = kind == central || below(random, 2) == 0;
   std::int64_t place = -below(random, 500);
-  initial.x = {}, initial.v = {}, initial.m = {};
+  std::vector<std::string> x, v, m;
   for (std::int64_t b = 0; b < particles; ++b) {
     const bool moves = kind != few_move || below(random, 3) == 0;
     // Digits beyond a double's must not change the order.
-    initial.x.push_back(kind == lattice ? std::to_string(b) : number_of(random, place, 2));
-    initial.v.push_back(kind == lattice ? std::to_string(below(random, 5) - 2)
-                        : moves         ? number_of(random, below(random, 400) - 200, 2)
-                                        : "0");
+    x.push_back(kind == lattice ? std::to_string(b) : number_of(random, place, 2));
+    v.push_back(kind == lattice ? std::to_string(below(random, 5) - 2)
+                : moves         ? number_of(random, below(random, 400) - 200, 2)
+                                : "0");
     if (masses)
-      initial.m.push_back(kind == central && b == particles / 2 ? one_of(random, {"1000", "0.001", "30.5"})
-                          : kind == central                     ? "1"
-                                                                : number_of(random, 20 + below(random, 300), 2));
+      m.push_back(kind == central && b == particles / 2 ? one_of(random, {"1000", "0.001", "30.5"})
+                  : kind == central                     ? "1"
+                                                        : number_of(random, 20 + below(random, 300), 2));
     place += kind == groups && below(random, 3) == 0 ? 2000 + below(random, 500) : 2 + below(random, 200);
   }
+  std::string list = "initial.type = \"list\"\n";
+  for (const auto& [name, numbers] : {std::pair("x", &x), std::pair("v", &v), std::pair("m", &m)})
+    if (!numbers->empty()) list += fmt::format("initial.{} = [\"{}\"]\n", name, fmt::join(*numbers, "\", \""));
+  return list;
 }
-
-constexpr const char* some_ring = "initial = {type = \"ring\", particles = 2, length = 2}\n";
 
 Drawn draw_list(Random& random) {
   const LawText law = draw_law(random);
-  Drawn d{parse_scene(law.law + some_ring + law.run + draw_times(random), "list", {}), law.roots};
-  d.scene.initial.type = InitialType::list;
-  d.scene.initial.length = Decimal("0");  // on a line
-  draw_particles(random, d.scene.initial);
-  return d;
+  const std::string times = draw_times(random);
+  return with_law(law, draw_particles(random), times);
 }
 Drawn draw_walled(Random& random) {
-  Drawn bare = draw_list(random);
-  while (bare.scene.law.type != LawType::inelastic || bare.scene.run.collapse == tools::scene::CollapsePolicy::merge)
-    bare = draw_list(random);
   const LawText law = draw_law(random, true);
-  const Initial& initial = bare.scene.initial;
-  const auto listed = [](const DecimalColumn& column) {
-    std::string all;
-    for (std::size_t k = 0; k < column.size(); ++k) all += fmt::format("{}\"{}\"", k == 0 ? "" : ", ", column[k]);
-    return "[" + all + "]";
-  };
-  const std::string list = fmt::format("initial = {{type = \"list\", x = {}, v = {}{}}}\n", listed(initial.x),
-                                       listed(initial.v), initial.m.empty() ? "" : ", m = " + listed(initial.m));
-  const std::string walls =
-      draw_walls(random, std::stod(std::string(initial.x[0])), std::stod(std::string(initial.x.back())));
-  return {parse_scene(law.law + list + walls + law.run + draw_times(random), "walls", {}), law.roots};
+  const std::string list = draw_particles(random);
+  const Initial bare = parse_scene("law.type = \"sticky\"\nrun.until = 1\n" + list, "bare", {}).initial;
+  const std::string walls = draw_walls(random, Decimal(bare.x[0]).value, Decimal(bare.x.back()).value);
+  return with_law(law, list + walls, draw_times(random));
 }
 // Under gravity; on an inelastic floor particles collapse, so laws without a threshold are left out.
 Drawn draw_falling(Random& random) {
@@ -181,7 +174,7 @@ Drawn draw_ring(Random& random) {
                               "\", variance = " + one_of(random, {"1", "0.25", "2.25"}) +
                               ", perturbation = " + one_of(random, {"0", "0.1", "0.3"}) + draw_masses(random) +
                               ", seed = " + std::to_string(below(random, 1000000)) + "}\n";
-  return {parse_scene(law.law + initial + law.run + draw_times(random), "ring", {}), law.roots};
+  return with_law(law, initial, draw_times(random));
 }
 Drawn draw_cold(Random& random) {
   const LawText law = draw_law(random);
@@ -192,7 +185,7 @@ Drawn draw_cold(Random& random) {
                               "\", spacing = " + one_of(random, {"1", "0.3"}) +
                               ", perturbation = " + one_of(random, {"0", "0.3"}) + draw_masses(random) +
                               ", seed = " + std::to_string(below(random, 1000000)) + "}\n";
-  return {parse_scene(law.law + initial + law.run + draw_times(random), "cold", {}), law.roots || hot > 1};
+  return with_law(law, initial, draw_times(random), hot > 1);
 }
 Drawn draw_rows(Random& random) {
   const LawText law = draw_law(random);
@@ -205,7 +198,7 @@ Drawn draw_rows(Random& random) {
                                               std::string(", centre = {mass = 1e-3, speed = 0}")}) +
                               ", perturbation = " + one_of(random, {"0", "0.3"}) +
                               ", seed = " + std::to_string(below(random, 1000000)) + "}\n";
-  return {parse_scene(law.law + initial + law.run + draw_times(random), "rows", {}), law.roots};
+  return with_law(law, initial, draw_times(random));
 }
 
 // ---- the same scene as a gas

@@ -1,40 +1,13 @@
 // The tables of a scene are known before it runs, and a run writes exactly these.
 #include "cradle/tools/record/rows.hpp"
 
-#include <gtest/gtest.h>
-
-#include <string>
-#include <vector>
-
+#include "cradle/tests/tools/cases.hpp"
 #include "cradle/tools/ensemble/layout.hpp"
 #include "cradle/tools/record/recorded.hpp"
 #include "cradle/tools/run/run.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
 
 namespace cradle::tools::tables_test {
-
-const std::string rows = "[initial]\ntype = 'rows'\nparticles = 60\nperturbation = 0.05\n[run]\nuntil = 40\n"
-                         "[output]\nprofiles = { times = [20], bins = 7, range = [-5, 5] }\nseries.points = 5\n";
-
-const std::pair<const char*, std::string> scenes[] = {
-    {"dry", "[law]\ntype = 'inelastic'\nrestitution = 0.9\ncutoff = 1e-3\n" + rows},
-    {"core", "[law]\ntype = 'inelastic'\nrestitution = 0.9\ncutoff = 1e-3\n" + rows + "core = true\n"},
-    {"wet", "[law]\ntype = 'wet'\nloss = 0.05\n" + rows + "zone = { from = 5, samples = 16, bins = 6, reach = 3 }\n" +
-                "scenario = true\ncore = true\n"},
-    {"sticky", "[law]\ntype = 'sticky'\n" + rows},
-    {"ring", "law.type = 'wet'\nlaw.loss = 0.1\nrun.until = 3\noutput.series.points = 5\n"
-             "initial = { type = 'ring', particles = 20 }"},
-    {"gas",
-     "law = { type = 'inelastic', restitution = 1 }\nrun.until = 40\n"
-     "initial = { type = 'rows', particles = 60 }\nwalls = { left = { position = -31, restitution = 0.9 }, right "
-     "= { position = 40, temperature = 1 } }\noutput = { averages = { every = 1, bins = 3 }, histograms = "
-     "['free_flight', 'pair_flight', 'closing_speed', 'dissipative_closing_speed', 'collisions_per_particle', "
-     "'gap', 'cluster'], counting = { every = 20, cluster_gap = 0.5 }, correlations = { every = 1, longest = 30 }, "
-     "structure = { every = 5, times = [7], waves = 30 }, pair_distribution = { every = 5, times = [8], distance = 9, "
-     "bins = 4 }, series.points = 5 }"},
-    {"model", "law.type = 'wet'\nlaw.loss = 0.05\nrun.until = 3\noutput.series.points = 5\n"
-              "initial = { type = 'clusters', x = [-1, 1] }"},
-};
 
 void expect_columns(const Group& declared, const Group* written) {
   ASSERT_NE(written, nullptr) << declared.name;
@@ -54,9 +27,10 @@ void expect_columns(const Group& declared, const Group* written) {
 }
 
 TEST(RunTables, AreWhatARunWrites) {
-  for (const auto& [name, text] : scenes) {
-    SCOPED_TRACE(name);
-    const Scene scene = parse_scene(text, std::string(name) + ".toml");
+  for (const tests::ListedCase& listed : tests::cases_in("record/scenes.txt")) {
+    SCOPED_TRACE(listed.name());
+    const Scene scene = parse_scene(listed.below_name(), listed.name() + ".toml");
+    const bool gas = listed.name() == "gas";
     const RunOutcome run = run_scene(scene, {Progress::Show::never});
     EXPECT_EQ(run.end, RunEnd::reached);
     std::vector<std::string> summary;
@@ -78,8 +52,8 @@ TEST(RunTables, AreWhatARunWrites) {
       if (row->summary != nullptr)
         for (const std::string& number : row->summary(scene)) summary.push_back(number);
     }
-    EXPECT_EQ(at_times, (std::string(name) == "gas" ? 2U : 0U) + (scene.output.profiles.times.empty() ? 0U : 1U));
-    EXPECT_EQ(at_end, std::string(name) == "gas" ? 11U : std::string(name) == "wet" ? 1U : 0U);
+    EXPECT_EQ(at_times, (gas ? 2U : 0U) + (scene.output.profiles.times.empty() ? 0U : 1U));
+    EXPECT_EQ(at_end, gas ? 11U : listed.name() == "wet" ? 1U : 0U);
     std::vector<std::string> written;
     for (const auto& [number, value] : run.summary) written.push_back(number);
     EXPECT_EQ(summary, written);
@@ -106,17 +80,9 @@ TEST(RunTables, AreFilledWithAsManyNumbersAsTheyHave) {
 // anywhere in the file.
 TEST(RunTables, HaveAnOrder) {
   GrowingTables tables;
-  const std::vector<std::string> order{"series",
-                                       "snapshots/0000",
-                                       "pair_distribution/0001",
-                                       "events",
-                                       "averages",
-                                       "histograms/gap",
-                                       "pair_distribution_average",
-                                       "sequence",
-                                       "collapse",
-                                       "exact/series",
-                                       "exact/events"};
+  std::istringstream names("series snapshots/0000 pair_distribution/0001 events averages histograms/gap "
+                           "pair_distribution_average sequence collapse exact/series exact/events");
+  const std::vector<std::string> order(std::istream_iterator<std::string>(names), {});
   for (auto name = order.rbegin(); name != order.rend(); ++name) tables.add({*name, {}, {}});
   std::vector<std::string> found;
   for (const Group& table : in_order(std::move(tables))) found.push_back(table.name);

@@ -135,24 +135,22 @@ TEST_F(DamagedFiles, OfAnEarlierFormatAreRefusedInOneWay) {
   write("run.h5.part", std::string("CRADLER1") + std::string(40, 'x'));
   write("ensemble.h5.part", std::string("CRADLEJ2") + std::string(40, 'x'));
   write("run.h5.checkpoint", std::string("CRADLEC1") + std::string(40, 'x'));
-  for (const auto& [command, file] : std::vector<std::pair<std::string, std::string>>{
-           {"info a.h5", "a.h5"},
-           {"export a.h5 --to csv", "a.h5"},
-           {"plot a.h5", "a.h5"},
-           {"merge a.h5 -o b.h5", "a.h5"},
-           {"diff a.h5 a.h5", "a.h5"},
-           {"info run.h5.part", "run.h5.part"},
-           {"resume run.h5", "run.h5.part"},
-           {"info ensemble.h5.part", "ensemble.h5.part"},
-           {"resume ensemble.h5", "ensemble.h5.part"},
-           {"ensemble fig2 --replicas 2 -o ensemble.h5", "ensemble.h5.part"},
-           {"info run.h5.checkpoint", "run.h5.checkpoint"}}) {
-    const std::string formats = file == "a.h5" ? "1, here 2" : file == "ensemble.h5.part" ? "2, here 4" : "1, here 4";
-    const Printed refused = shell("cradle " + command, 4);
-    EXPECT_EQ(refused.err, "cradle: " + file + ": a file of an earlier version of cradle (found format " + formats +
-                               "): read it with the version that wrote it, or remove it and run its scene again\n")
-        << command;
-  }
+  const struct {
+    std::string file, formats;
+    std::vector<std::string> commands;
+  } refusals[] = {
+      {"a.h5", "1, here 2", {"info a.h5", "export a.h5 --to csv", "plot a.h5", "merge a.h5 -o b.h5", "diff a.h5 a.h5"}},
+      {"run.h5.part", "1, here 4", {"info run.h5.part", "resume run.h5"}},
+      {"ensemble.h5.part",
+       "2, here 4",
+       {"info ensemble.h5.part", "resume ensemble.h5", "ensemble fig2 --replicas 2 -o ensemble.h5"}},
+      {"run.h5.checkpoint", "1, here 4", {"info run.h5.checkpoint"}}};
+  for (const auto& [file, formats, commands] : refusals)
+    for (const std::string& command : commands)
+      EXPECT_EQ(shell("cradle " + command, 4).err,
+                "cradle: " + file + ": a file of an earlier version of cradle (found format " + formats +
+                    "): read it with the version that wrote it, or remove it and run its scene again\n")
+          << command;
 }
 
 TEST_F(DamagedFiles, EmptySeriesAreListed) {

@@ -1,4 +1,5 @@
-// A full disk: a message and status 4; the old file stays, and computed results are kept.
+// A full disk: a message and status 4; the old file stays, and computed results are kept. (Limits on the size of files:
+// tests/tools/outputs.txt.)
 
 #include <algorithm>
 
@@ -43,25 +44,6 @@ TEST_F(FullDisk, WhereNothingCanBeKeptTheMessageSaysSo) {
   EXPECT_EQ(run.status, 4) << run.err;
   EXPECT_TRUE(has(run.err, "it could not be kept elsewhere either: "));
   EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 2) << "the checkpoint's, and this: " << run.err;
-}
-
-// Without a file system of its own: files may grow to 8 blocks only.
-TEST_F(FullDisk, LimitOnFileSizesIsNoCrash) {
-  const Printed run = shell("echo old > a.h5; ulimit -f 8; " + std::string(too_large), 4);
-  EXPECT_TRUE(has(run.err, "a.h5: could not be written (found File too large)"));
-  EXPECT_EQ(contents(folder / "a.h5"), "old\n");
-}
-
-TEST_F(FullDisk, EnsembleContinuesFromItsJournal) {
-  const std::string ensemble = "cradle ensemble fig2 --quiet --set initial.particles=100 --set run.until=20 --set "
-                               "output.snapshots=[] --set output.profiles.times=[] --replicas 12 -o ";
-  shell(ensemble + "whole.h5", 0);
-  // The journals of some replicas are smaller than this limit, the file is larger.
-  const Printed full = shell("ulimit -f 40; " + ensemble + "a.h5", 4);
-  EXPECT_TRUE(has(full.err, "could not be written (found File too large)"));
-  EXPECT_FALSE(exists("a.h5"));
-  shell(ensemble + "a.h5", 0);
-  EXPECT_TRUE(contents(folder / "a.h5") == contents(folder / "whole.h5"));
 }
 
 }  // namespace cradle::tests::full_disk_test

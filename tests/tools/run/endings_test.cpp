@@ -192,19 +192,20 @@ std::string random_scene(std::uint64_t seed) {
 
 // The time up to which collisions are certain is not after one that should or should not have come.
 TEST_F(Endings, CollisionsAcrossTheEndAreUncertainFromTheLastOneOn) {
-  write("scene.toml",
-        "law = {type = \"inelastic\", restitution = 0.9999999999}\nrun = {start = -7.25, until = 1.8e21}\n"
-        "initial = {type = \"list\", x = [0, 2, 3.5, 5, 6], v = [0.5, 1, 1, 2, 0.5]}\n");
-  shell("cradle run scene.toml --force -o end.h5", 0);  // makes 3 collisions; the fourth is at 1.2e21
-  EXPECT_LT(tools::attribute<double>(read("end.h5").attributes, "uncertain_from", ""), 1.2e21);
-  write("scene.toml",
-        "law = {type = \"inelastic\", restitution = 0.5}\ninitial = {type = \"list\", x = [0, 1], v = [1, 0]}\n"
-        "run.until = 0.9999999999999999\n");
-  shell("cradle run scene.toml --force -o end.h5", 0);  // makes none; the first is at 1
-  EXPECT_EQ(tools::attribute<double>(read("end.h5").attributes, "uncertain_from", ""), 0);
+  const auto uncertain_from = [&](const std::string& scene, const std::string& options = "") {
+    return tools::attribute<double>(result_of(scene, options).attributes, "uncertain_from", "");
+  };
+  // Makes 3 collisions; the fourth is at 1.2e21.
+  EXPECT_LT(uncertain_from("law = {type = 'inelastic', restitution = 0.9999999999}\n"
+                           "run = {start = -7.25, until = 1.8e21}\n"
+                           "initial = {type = 'list', x = [0, 2, 3.5, 5, 6], v = [0.5, 1, 1, 2, 0.5]}\n"),
+            1.2e21);
+  // Makes none; the first is at 1.
+  const std::string pair = "law = {type = 'inelastic', restitution = 0.5}\nrun.until = 0.9999999999999999\n"
+                           "initial = {type = 'list', x = [0, 1], v = [1, 0]}\n";
+  EXPECT_EQ(uncertain_from(pair), 0);
   // The double nearest to 0.1 is later than that.
-  shell("cradle run scene.toml --force --set run.start=0.1 --set run.until=1.0999999999999999 -o end.h5", 0);
-  EXPECT_EQ(tools::attribute<double>(read("end.h5").attributes, "uncertain_from", ""), std::nextafter(0.1, 0));
+  EXPECT_EQ(uncertain_from(pair, "--set run.start=0.1 --set run.until=1.0999999999999999"), std::nextafter(0.1, 0));
 }
 
 TEST_F(Endings, NoRunStaysAtOneTime) {

@@ -56,17 +56,6 @@ TEST_F(GravityAndWalls, TheAccountOfEnergyBalances) {
   }
 }
 
-// x = 1 - t^2/4 and 4 + t/2 - t^2/4; the potential energy is half of their sum.
-TEST_F(GravityAndWalls, APositionIsQuadratic) {
-  const Result result = result_of(law + falls +
-                                  "initial = { type = 'list', x = [1, 4], v = [0, 0.5] }\nrun.until = 4\n"
-                                  "output = { series.times = [0, 4], snapshots = [4] }\n");
-  EXPECT_EQ(numbers(result, "snapshots/0000", "x"), (std::vector<double>{-3, 2}));
-  EXPECT_EQ(numbers(result, "snapshots/0000", "v"), (std::vector<double>{-2, -1.5}));
-  EXPECT_EQ(numbers(result, "series", "potential_energy"), (std::vector<double>{2.5, -0.5}));
-  EXPECT_EQ(numbers(result, "series", "energy"), (std::vector<double>{0.125, 3.125}));
-}
-
 TEST_F(GravityAndWalls, AColumnInFreeFallHasTheGapsOfOneAtRest) {
   const std::string rows = law + "initial = { type = 'rows', particles = 200, perturbation = 0.1 }\nrun.until = 60\n"
                                  "output = { series.points = 7, snapshots = [60] }\n";

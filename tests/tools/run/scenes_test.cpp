@@ -1,12 +1,8 @@
 // Every scene of the package, at a size of a second or less, ends with the status that it is meant to end with
 // (small_scenes.txt, of which test_scenes.py makes reports and pictures). A scene that is added needs a row there.
 #include <set>
-#include <sstream>
-#include <string>
-#include <vector>
 
-#include "cradle/tests/tools/program.hpp"
-#include "cradle/tools/scene/scene.hpp"
+#include "cradle/tests/tools/cases.hpp"
 
 namespace cradle::tests::scenes_test {
 
@@ -16,15 +12,14 @@ struct Meant {
 };
 
 std::vector<Meant> scenes() {
-  std::istringstream file(contents(test::source_folder + "/tests/tools/run/small_scenes.txt"));
   std::vector<Meant> all;
-  for (std::string line; std::getline(file, line);) {
-    std::istringstream words(line);
-    Meant meant;
-    if (!(words >> meant.status >> meant.command >> meant.scene)) continue;  // a comment
-    std::getline(words, meant.options);
-    all.push_back(meant);
-  }
+  for (const ListedCase& listed : cases_in("run/small_scenes.txt"))
+    for (const std::string& line : listed.lines) {
+      std::istringstream words(line);
+      Meant& meant = all.emplace_back();
+      words >> meant.status >> meant.command >> meant.scene;
+      std::getline(words, meant.options);
+    }
   return all;
 }
 

@@ -25,23 +25,10 @@ TEST(Decimal, CanonicalForm) {
 
 TEST(Decimal, OrderIsExact) {
   // Strictly increasing; every pair is compared both ways.
-  const char* increasing[] = {"-1e400",
-                              "-10",
-                              "-9.99",
-                              "-1",
-                              "-1e-400",
-                              "0",
-                              "1e-999999999999999999",
-                              "1e-400",
-                              "0.09",
-                              "0.1",
-                              "0.10000000000000000000000000000001",
-                              "1",
-                              "1.00000000000000000000001",
-                              "9",
-                              "10",
-                              "1e400",
-                              "1e999999999999999999"};
+  constexpr const char *least = "1e-999999999999999999", *most = "1e999999999999999999",
+                       *above_a_tenth = "0.10000000000000000000000000000001", *above_1 = "1.00000000000000000000001";
+  const char* increasing[] = {"-1e400", "-10",         "-9.99", "-1",    "-1e-400", "0",  least,   "1e-400", "0.09",
+                              "0.1",    above_a_tenth, "1",     above_1, "9",       "10", "1e400", most};
   const auto n = std::size(increasing);
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t j = 0; j < n; ++j)

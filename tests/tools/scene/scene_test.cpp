@@ -3,10 +3,8 @@
 #include "cradle/tools/scene/scene.hpp"
 
 #include <algorithm>
-#include <map>
-#include <sstream>
 
-#include "cradle/tests/tools/program.hpp"
+#include "cradle/tests/tools/cases.hpp"
 #include "cradle/tools/scene/fields.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
 
@@ -14,20 +12,12 @@ namespace cradle::tools::scene_test {
 
 using test::has;
 using tests::contents;
-using tests::matches;
 using tests::ProgramTest;
 using tests::refusal;
 using Strings = std::vector<std::string>;
 
-const std::string good = R"([law]
-type = "inelastic"
-restitution = 0.999
-[initial]
-type = "rows"
-particles = 8000
-[run]
-until = 6500
-)";
+const std::string good = "law.type = 'inelastic'\nlaw.restitution = 0.999\ninitial.type = 'rows'\n"
+                         "initial.particles = 8000\nrun.until = 6500\n";
 
 Scene parse(const std::string& text, const Strings& overrides = {}) { return parse_scene(text, "s.toml", overrides); }
 
@@ -41,47 +31,22 @@ void expect_read_back(const Scene& scene) {
   EXPECT_EQ(effective_toml(again), effective);
 }
 
-struct Row {
-  std::size_t line = 0;
-  std::string scene;
-  Strings settings, values;
-};
-
-// Reads values.txt, whose head describes its form.
-std::vector<Row> rows_of_values() {
-  std::istringstream file(contents(test::source_folder + "/tests/tools/scene/values.txt"));
-  std::map<std::string, std::string> texts;
-  for (const BundledScene& bundled : bundled_scenes()) texts['@' + std::string(bundled.name)] = bundled.text;
-  std::string* defined = nullptr;
-  std::vector<Row> rows(1);
-  std::size_t number = 0;
-  for (std::string line; std::getline(file, line);) {
-    Row& row = rows.back();
-    ++number;
-    if (line.empty()) {
-      defined = nullptr;
-      if (!row.values.empty()) rows.emplace_back();
-    } else if (line.starts_with('@') && line.ends_with(" =")) {
-      defined = &texts[line.substr(0, line.size() - 2)];
-    } else if (line.starts_with("=> ")) {
-      row.line = number;
-      row.values.push_back(line.substr(3));
-    } else if (line.starts_with("--set ")) {
-      row.settings.push_back(line.substr(6));
-    } else if (!line.starts_with('#')) {
-      (defined != nullptr ? *defined : row.scene) += line.starts_with('@') ? texts.at(line) : line + "\n";
-    }
-  }
-  return rows;
-}
-
 TEST(Scene, HasTheValuesOfTheTable) {
-  for (const Row& row : rows_of_values()) {
-    SCOPED_TRACE("values.txt:" + std::to_string(row.line));
-    const Scene scene = parse(row.scene, row.settings);
+  for (const tests::ListedCase& listed : tests::cases_in("scene/values.txt")) {
+    SCOPED_TRACE("values.txt:" + std::to_string(listed.number));
+    std::string toml;
+    Strings settings, wanted_values;
+    for (const std::string& line : listed.lines)
+      if (line.starts_with("=> "))
+        wanted_values.push_back(line.substr(3));
+      else if (line.starts_with("--set "))
+        settings.push_back(line.substr(6));
+      else
+        toml += line + "\n";
+    const Scene scene = parse(toml, settings);
     std::string all = "\n";
     for (const auto& [key, text] : values(scene, true)) all.append(key).append(" = ").append(text).append("\n");
-    for (const std::string& wanted : row.values)
+    for (const std::string& wanted : wanted_values)
       if (wanted.starts_with("no "))
         EXPECT_FALSE(has(all, "\n" + wanted.substr(3) + " = "));
       else
@@ -134,27 +99,6 @@ TEST(Scene, CheckpointsAreNoPartOfTheEffectiveScene) {
 }
 
 class SceneFiles : public ProgramTest {};
-
-// What is no file is neither waited for nor read without end, whatever command it is given to.
-TEST_F(SceneFiles, AreFiles) {
-  write("list.toml", "law.type = 'sticky'\nrun.until = 1\ninitial = { type = 'list', file = 'fifo' }\n");
-  shell("mkfifo fifo && mkdir out && mkfifo out/files.txt && cradle run collapse3 --quiet -o a.h5", 3);
-  for (const char* command :
-       {"check fifo", "run fifo", "run /dev/zero", "ensemble fifo --replicas 2", "sweep fifo", "trust fifo",
-        "certify fifo", "threshold fifo --vary law.restitution=0:1", "theory fifo", "new b.toml --from fifo",
-        "run list.toml", "run list.toml --set initial.file=/dev/zero", "info fifo", "export fifo --to csv",
-        "diff fifo a.h5", "merge fifo a.h5 -o b.h5", "resume fifo"}) {
-    const tests::Printed refused = shell(std::string("timeout 20 cradle ") + command, 4);
-    EXPECT_TRUE(matches(refused.err, "(fifo|zero): [^:]+ \\(found [^:]*(?:FIFO|device)[^:]*\\): .+").size() == 1)
-        << command << "\n"
-        << refused.err;
-  }
-  EXPECT_TRUE(has(shell("timeout 20 cradle export a.h5 --to out", 2).err, "a folder with other files"));
-  // A file that is given as another one is not shown.
-  write("secret", "root:$6$abcdef:19000:0:99999:7:::\nsecond,line\n");
-  for (const char* command : {"run list.toml --set initial.file=secret", "run secret", "info secret"})
-    EXPECT_FALSE(has(shell(std::string("cradle ") + command).err, "abcdef")) << command;
-}
 
 TEST(Scene, LongTextsAreCutOffInMessages) {
   EXPECT_EQ(refusal(Exit::bad_input, [] { parse("law.type = '" + std::string(5000, 'a') + "'"); }),

@@ -2,9 +2,8 @@
 // is refused with file, line and key, and nothing but a scene or such a refusal comes of any value.
 #include <map>
 #include <regex>
-#include <sstream>
 
-#include "cradle/tests/tools/program.hpp"
+#include "cradle/tests/tools/cases.hpp"
 #include "cradle/tools/scene/fields.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
 
@@ -27,14 +26,13 @@ Assignments with(Assignments scene, const Assignments& more) {
 
 // Scenes that together have every row of the table.
 std::vector<Assignments> scenes() {
-  std::istringstream file(tests::contents(test::source_folder + "/tests/tools/scene/every_key.txt"));
-  std::vector<Assignments> all(1);
-  for (std::string line; std::getline(file, line);) {
-    const auto equals = line.find(" = ");
-    if (line.empty())
-      all.emplace_back();
-    else if (!line.starts_with('#'))
-      all.back().emplace(line.substr(0, equals), line.substr(equals + 3));
+  std::vector<Assignments> all;
+  for (const tests::ListedCase& listed : tests::cases_in("scene/every_key.txt")) {
+    Assignments& one = all.emplace_back();
+    for (const std::string& line : listed.lines) {
+      const auto equals = line.find(" = ");
+      one.emplace(line.substr(0, equals), line.substr(equals + 3));
+    }
   }
   return all;
 }

@@ -10,8 +10,7 @@
 #include "cradle/tests/tools/result/small_files.hpp"
 #include "cradle/tools/support/errors.hpp"
 
-namespace cradle::tests {
-namespace journal_test {
+namespace cradle::tests::journal_test {
 
 using tools::JournalHeader;
 using tools::JournalReader;
@@ -121,5 +120,4 @@ TEST_F(Journal, HalfARecordIsTakenBackWhereTheDiskIsFull) {
   EXPECT_EQ(records(), (std::vector<std::string>{"first", "second"}));
 }
 
-}  // namespace journal_test
-}  // namespace cradle::tests
+}  // namespace cradle::tests::journal_test

@@ -1,11 +1,11 @@
-// Two programs write to one name: the second is refused before it has done anything, at any time.
+// Two programs write to one name: the second is refused before it has done anything, at any time. (What is no
+// file is refused: tests/tools/outputs.txt.)
 
 #include "cradle/tests/tools/ensemble/ensembles.hpp"
 #include "cradle/tools/ensemble/ensemble.hpp"
 #include "cradle/tools/support/atomic_file.hpp"
 
-namespace cradle::tests {
-namespace two_writers_test {
+namespace cradle::tests::two_writers_test {
 
 // The second comes while the first one runs its first replica.
 TEST_F(Ensembles, SecondOfTwoThatBeginAfreshIsRefused) {
@@ -28,7 +28,7 @@ TEST_F(Ensembles, SecondOfTwoThatBeginAfreshIsRefused) {
   EXPECT_TRUE(begins(second.err, "cradle: a.h5: another program is writing this file (found process "));
   // It comes again when the first one is done: nothing is lost.
   run("ensemble shock.toml --first 4 --replicas 4 -o a.h5");
-  EXPECT_EQ(result("a.h5").find("replicas")->columns.front().rows(), 8U);
+  EXPECT_EQ(read("a.h5").find("replicas")->columns.front().rows(), 8U);
 }
 
 TEST_F(Ensembles, OneRunAtATimeWritesToAName) {
@@ -42,24 +42,8 @@ TEST_F(Ensembles, OneRunAtATimeWritesToAName) {
     EXPECT_TRUE(contents(folder / "a.h5") == "old");
   }
   run("run shock.toml --quiet --force -o a.h5");
-  EXPECT_NE(result("a.h5").find("series"), nullptr);
+  EXPECT_NE(read("a.h5").find("series"), nullptr);
   EXPECT_EQ(contents(folder / "a.h5.new"), "another user's");
 }
 
-TEST_F(Ensembles, FifosAreRefusedByNameAndLinksFollowed) {
-  for (const auto* command : {"run shock.toml -o fifo", "ensemble shock.toml --replicas 2 -o fifo"}) {
-    const Printed refused = shell(std::string("test -p fifo || mkfifo fifo; cradle ") + command, 4);
-    EXPECT_TRUE(has(refused.err, ": cannot be written (found a FIFO"));
-    EXPECT_TRUE(std::filesystem::is_fifo(folder / "fifo"));
-  }
-  for (const auto* command : {"info fifo", "export fifo --to csv", "merge fifo fifo -o a.h5"})
-    shell(std::string("timeout 300 cradle ") + command, 4);
-  write("a.h5", "old");
-  std::filesystem::create_symlink("a.h5", folder / "link.h5");
-  run("run shock.toml --quiet --force -o link.h5");
-  EXPECT_TRUE(std::filesystem::is_symlink(folder / "link.h5"));
-  EXPECT_NE(result("a.h5").find("series"), nullptr);
-}
-
-}  // namespace two_writers_test
-}  // namespace cradle::tests
+}  // namespace cradle::tests::two_writers_test

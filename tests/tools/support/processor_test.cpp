@@ -4,8 +4,7 @@
 
 #include "cradle/tests/tools/program.hpp"
 
-namespace cradle::tests {
-namespace processor_test {
+namespace cradle::tests::processor_test {
 
 using Processor = ProgramTest;
 
@@ -24,5 +23,4 @@ TEST_F(Processor, OlderThanTheBuildIsReported) {
   EXPECT_EQ(on("Haswell").status, 0);
 }
 
-}  // namespace processor_test
-}  // namespace cradle::tests
+}  // namespace cradle::tests::processor_test

@@ -1,0 +1,58 @@
+#pragma once
+// Cases in a text file: some lines each, with an empty line between them. `# ...` is a comment. `@name` stands for the
+// lines of that name, which `@name =` begins and an empty line ends, or for the bundled scene of that name.
+
+#include <algorithm>
+#include <iterator>
+#include <map>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "cradle/tests/tools/program.hpp"
+#include "cradle/tools/scene/scene.hpp"
+
+namespace cradle::tests {
+
+using Lines = std::vector<std::string>;
+
+struct ListedCase {
+  std::size_t number;  // of its first line
+  Lines lines;
+
+  // Of those that begin with their name.
+  const std::string& name() const { return lines.front(); }
+  std::string below_name() const {
+    std::string text;
+    for (std::size_t k = 1; k < lines.size(); ++k) text += lines[k] + "\n";
+    return text;
+  }
+  friend std::ostream& operator<<(std::ostream& out, const ListedCase& of) { return out << of.name(); }
+};
+
+// Of a file below tests/tools.
+inline std::vector<ListedCase> cases_in(const std::string& name) {
+  std::map<std::string, Lines> texts;
+  for (const tools::BundledScene& scene : tools::bundled_scenes())
+    texts["@" + std::string(scene.name)] = {std::string(scene.text)};
+  std::istringstream file(contents(test::source_folder + "/tests/tools/" + name));
+  std::vector<ListedCase> all;
+  Lines* open = nullptr;  // of a case or of a text
+  std::size_t number = 1;
+  for (std::string line; std::getline(file, line); ++number) {
+    if (line.empty()) {
+      open = nullptr;
+    } else if (line.starts_with('@') && line.ends_with(" =")) {
+      open = &texts[line.substr(0, line.size() - 2)];
+    } else if (!line.starts_with('#')) {
+      if (open == nullptr) open = &all.emplace_back(ListedCase{number, {}}).lines;
+      if (line.starts_with('@'))
+        std::ranges::copy(texts.at(line), std::back_inserter(*open));
+      else
+        open->push_back(line);
+    }
+  }
+  return all;
+}
+
+}  // namespace cradle::tests

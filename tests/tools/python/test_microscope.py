@@ -8,7 +8,6 @@ of a pixel, where doubles that are sums of local terms are good to 1e-9 of one.
 """
 import base64
 import itertools
-import json
 import math
 import pathlib
 import tempfile
@@ -174,12 +173,6 @@ class Data(unittest.TestCase):
                            lambda: file.create_group("snapshots"), lambda: file.attrs.update(kind="ensemble")):
                 change()
                 self.assertIsNone(microscope.data(cradle.Result("empty.h5", file)))
-
-    def test_same_result_same_bytes(self):
-        with tempfile.TemporaryDirectory() as folder:
-            result, *_ = rows_result(pathlib.Path(folder), 30)
-            with result:
-                self.assertEqual(json.dumps(microscope.data(result)), json.dumps(microscope.data(result)))
 
 
 @unittest.skipUnless(browser.find(), "no Chromium (Debian: chromium)")

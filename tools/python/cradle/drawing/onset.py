@@ -4,7 +4,7 @@ and Young's estimate and with the exact number of particles in free space, or at
 import numpy as np
 
 from .scenarios import wilson
-from .style import shades, subplots
+from .style import shades
 
 
 def pictures(result, _theory, _units):
@@ -53,8 +53,8 @@ def half(points):
     return at[k - 1] + (at[k] - at[k - 1]) * (0.5 - share[k - 1]) / (share[k] - share[k - 1])
 
 
-def draw(curves, walled, axes):
-    figure, (left, right) = subplots(axes, 1, 2, figsize=(7.4, 3.4))
+def draw(curves, walled, panels):
+    left, right = panels(1, 2, figsize=(7.4, 3.4))
     for (eps, points), colour in zip(curves.items(), shades(len(curves))):
         number = np.array([n for n, _, _ in points])
         share, low, high = np.array([wilson(hits, count) for _, hits, count in points]).T
@@ -72,4 +72,3 @@ def draw(curves, walled, axes):
                label="at a wall, exact" if walled else "free space, exact")
     right.set(xlabel=r"$1-r$", ylabel="particles $N_c$")
     right.legend(loc="lower left")
-    return figure

@@ -3,7 +3,7 @@ that of the rows and a delta peak, which begins at m_0 and grows at sqrt(rho_l r
 equal rows."""
 import numpy as np
 
-from .style import BLUE, GREY, ORANGE, shades, stacked, thinned
+from .style import BLUE, GREY, ORANGE, shades, thinned
 
 
 def pictures(result, _theory, units):
@@ -29,13 +29,13 @@ def peak(snapshot):
     return snapshot["x"][k], snapshot["v"][k], snapshot["m"][k]
 
 
-def draw_sticky(result, units, axes):
+def draw_sticky(result, units, panels):
     (left, u_left), (right, u_right), (core, _) = rows_of(result)
     snapshots, profiles = thinned(result.snapshots, 5), thinned(result.mean_profiles, 5)
     times = sorted({group["time"] for group in snapshots + profiles})
     colour = dict(zip(times, shades(len(times))))
     name = {time: rf"$t={time / units.t:.5g}$" for time in times}
-    figure, (velocity, density, mass) = stacked(axes, 3, height=2.3)
+    velocity, density, mass = panels.stacked(3, height=2.3)
     roots = np.sqrt([left, right])
     front = (roots[0] * u_left + roots[1] * u_right) / roots.sum()  # velocity of the peak, 0 for equal rows
     growth = roots[0] * roots[1] * (u_left - u_right)
@@ -90,7 +90,6 @@ def draw_sticky(result, units, axes):
         equal = left == right and u_left == -u_right
         formula = r"$m_0+2t\rho_0u_0$" if equal else r"$m_0+\sqrt{\rho_l\rho_r}\,(u_l-u_r)\,t$"
         draw_mass(mass, result, units, formula if equal or not core else formula + " (asymptotic)", core, growth)
-    return figure
 
 
 def draw_mass(ax, result, units, formula, core, growth):

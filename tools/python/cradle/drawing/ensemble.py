@@ -2,6 +2,7 @@
 extremes (light band); profiles; and the times of inelastic collapse if replicas stopped there."""
 import numpy as np
 
+from ..result import fronts
 from .cooling import cooled, cools, ring_of
 from .shock import draw_slope
 from .style import BLUE, GREY, ORANGE, beside, shades, thinned
@@ -33,7 +34,7 @@ def draw_series(result, theory, units, panels):
     time = result.series["time"] / units.t
     scale = {"energy": units.energy, "front_right": units.x, "cloud_width": units.x}
     shown = [(name, label) for name, label in SERIES if name in result.series
-             and np.ndim(result.series[name]["mean"]) == 1 and (result.series[name]["max"] > 0).any()]
+             and (name != "front_right" or name in fronts(result)) and (result.series[name]["max"] > 0).any()]
     axes = panels.stacked(len(shown), height=2.0, sharex=True)
     replicas = len(result.replicas.get("index", ()))
     left = min((int(counts[-1]) for name, _ in shown if (counts := result.series[name].get("count")) is not None),

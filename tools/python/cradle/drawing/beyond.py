@@ -2,7 +2,7 @@
 sticky gas, the dense core (core/observe/dense_core.hpp), and the rate of collisions in it."""
 import numpy as np
 
-from .style import BLUE, GREY, ORANGE, distinct, plt, shades
+from .style import BLUE, GREY, ORANGE, distinct, plt, shaded, shades
 
 MANY = 20         # snapshots that make a picture in space and time
 PATHS = 80        # of particles in it
@@ -146,7 +146,7 @@ def core_of(snapshot):
 def draw_distributions(snapshots, scale, units, panels):
     left, right = panels(1, 2, figsize=(7.2, 3.4), letters=True)
     chosen = snapshots[::max(1, len(snapshots) // 6)]
-    for snapshot, colour in zip(chosen, shades(len(chosen))):
+    for snapshot, colour in shaded(chosen):
         particles, gap = core_of(snapshot)
         v = (snapshot["v"][particles] - np.median(snapshot["v"][particles])) / scale
         density, edges = np.histogram(v, bins=50, range=(-0.75, 0.75))
@@ -173,7 +173,7 @@ def draw_spacetime(snapshots, units, panels):
     for s in snapshots:
         at = dict(zip(s["index"].tolist(), s["x"] / units.x))
         places.append({particle: x - at.get(middle, np.nan) for particle, x in at.items()})
-    for particle, colour in zip(particles.tolist(), shades(len(particles))):
+    for particle, colour in shaded(particles.tolist()):
         ax.plot(time, [at.get(particle, np.nan) for at in places], color=colour, lw=0.6)
     reach = max(np.ptp(s["x"][core_of(s)[0]]) for s in snapshots) / units.x
     ax.set(xlabel=units.time_label(), xlim=(time[0], time[-1]), ylim=(-0.7 * reach, 0.7 * reach),

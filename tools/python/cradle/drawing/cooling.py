@@ -4,7 +4,7 @@ of variance s^2 and mean spacing a (m = 1)
 exact for t -> infinity in the sticky gas (Burgers equation with white noise); Haff's law where it is predicted."""
 import numpy as np
 
-from .style import BLUE, GREEN, GREY, ORANGE, RED, power, thinned
+from .style import BLUE, GREEN, GREY, ORANGE, RED, note, power, thinned
 
 ENERGY, CLUSTERS = 0.221376226650747359, 1.32825735990448415
 STRETCH = 80  # particles of the last snapshot that are shown of the velocities
@@ -93,5 +93,5 @@ def draw_field(result, panels):
                    rasterized=True)
         ax.axhline(0, color=GREY, lw=0.6, zorder=0)
         ax.set_ylabel("velocity $v$ ($l/t$)")
-        ax.set_title(f"$t={power(snapshot['time'])}$", loc="right", fontsize=8)
+        note(ax, f"$t={power(snapshot['time'])}$")
     axes[-1].set_xlabel("position $x$ ($l$), a stretch of the ring")

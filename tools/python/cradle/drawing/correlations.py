@@ -10,7 +10,7 @@ import math
 import numpy as np
 
 from .averages import draw_points
-from .style import BLUE, ORANGE
+from .style import BLUE, ORANGE, note
 
 PANELS = (("msd", r"mean-square displacement ($l^2$)"),
           ("vacf", r"$\langle v(0)\,v(t)\rangle$ ($l^2/t^2$)"))
@@ -78,6 +78,5 @@ def draw(result, panels):
         for ax, curve in zip(axes, exact(result, times) or ()):
             ax.plot(times, curve, "--", color=ORANGE, lw=1, label="exact")
             ax.legend()
-    axes[0].set_title(f"tagged particles, $t={table['from']:.5g}$ to ${table['until']:.5g}$, bars: standard errors",
-                      loc="right", fontsize=8)
+    note(axes[0], f"tagged particles, $t={table['from']:.5g}$ to ${table['until']:.5g}$, bars: standard errors")
     axes[-1].set_xlabel("time between the two states ($t$)")

@@ -4,7 +4,7 @@ from fractions import Fraction
 
 import numpy as np
 
-from .style import BLUE, GREY, ORANGE
+from .style import BLUE, GREY, ORANGE, note
 
 
 def pictures(result, _theory, _units):
@@ -51,7 +51,7 @@ def draw(result, panels):
     below.loglog(particle[size > 0], size[size > 0], "o", ms=2.5, color=BLUE, label=precision)
     below.set(xlabel="heavy particle $n$", ylabel=r"$|t_n-(n-c_k)|\,u/a$")
     exact = int((size == 0).sum())
-    below.set_title(f"k = {order(result)}; {exact} of {len(size)} exact to the digits kept", loc="right", fontsize=8)
+    note(below, f"k = {order(result)}; {exact} of {len(size)} exact to the digits kept")
     below.legend(loc="upper left")
 
 

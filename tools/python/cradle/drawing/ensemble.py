@@ -5,7 +5,7 @@ import numpy as np
 from ..result import fronts
 from .cooling import cooled, cools, ring_of
 from .shock import draw_slope
-from .style import BLUE, GREY, ORANGE, beside, shades, thinned
+from .style import BLUE, GREY, ORANGE, beside, note, shaded, thinned
 
 SERIES = (("energy", "energy"), ("collisions", "collisions"), ("merges", "merges"), ("front_right", "right front"),
           ("cloud_width", "width of the cloud"))
@@ -39,8 +39,8 @@ def draw_series(result, theory, units, panels):
     replicas = len(result.replicas.get("index", ()))
     left = min((int(counts[-1]) for name, _ in shown if (counts := result.series[name].get("count")) is not None),
                default=replicas)
-    axes[0].set_title((f"{replicas} replicas; " if replicas else "") + (f"{left} at the end; " if left < replicas else "")
-                      + "bands: standard error, extremes", loc="right", fontsize=8)
+    note(axes[0], (f"{replicas} replicas; " if replicas else "") + (f"{left} at the end; " if left < replicas else "")
+         + "bands: standard error, extremes")
     axes[-1].set(xlabel=units.time_label(), xlim=(time[0], time[-1]))
     for ax, (name, label) in zip(axes, shown):
         band(ax, time, result.series[name], scale.get(name, 1), BLUE, lw=1.2)
@@ -76,7 +76,7 @@ def draw_profiles(result, theory, units, panels):
     profiles = thinned(result.profiles, 6)
     velocity, density = panels.stacked(2, width=6.4, height=2.7, sharex=True)
     name = "mass_density" if result.law in ("wet", "sticky") and "mass_density" in profiles[0] else "density"
-    for profile, colour in zip(profiles, shades(len(profiles))):
+    for profile, colour in shaded(profiles):
         x = profile["x"] / units.x
         band(velocity, x, profile["velocity"], units.v, colour, lw=1.1, label=rf"$t={profile['time'] / units.t:.5g}$")
         band(density, x, profile[name], 1 / units.x, colour, lw=1.1)
@@ -96,4 +96,4 @@ def draw_collapse(result, units, panels):
     ax.axvline(np.median(known), color=ORANGE, lw=1.2, label=f"median {np.median(known):.5g}")
     ax.axvline(known.mean(), color=GREY, lw=1.2, ls="--", label=f"mean {known.mean():.5g}")
     ax.set(xlabel=units.label(r"time of collapse $t_c$", r"time of collapse $t_c\,/\,(l/2u_0)$"), ylabel="replicas")
-    ax.set_title(f"{len(known)} of {len(times)} replicas", loc="right", fontsize=8)
+    note(ax, f"{len(known)} of {len(times)} replicas")

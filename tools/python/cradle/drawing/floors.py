@@ -3,7 +3,7 @@ doubling; the height of a column of beads against X = N (1 - r), beside that of 
 core/laws/README.md."""
 import numpy as np
 
-from .style import BLUE, GREY, ORANGE, shades
+from .style import BLUE, GREY, ORANGE, shaded
 
 LAST = 64  # samples of a ball that are shown
 
@@ -65,7 +65,7 @@ def draw_column(points, panels):
     g = -points[0].setting("gravity", "acceleration")
     found = np.array([column_of(point) for point in points])
     speeds = np.unique(np.round(found[:, 1], 9))
-    for speed, colour in zip(speeds, shades(len(speeds))):
+    for speed, colour in shaded(speeds):
         x, v, height, error = found[np.isclose(found[:, 1], speed)].T
         left.errorbar(x, height, yerr=error, fmt="o", ms=3.5, capsize=2, color=colour, label=rf"$V={speed:.3g}$")
         fine = np.geomspace(x.min(), x.max(), 50)

@@ -2,7 +2,7 @@
 elastic gas on a ring those of equilibrium, w/(2 T) exp(-w^2/(4 T)) for particles of mass 1."""
 import numpy as np
 
-from .style import BLUE, ORANGE
+from .style import BLUE, ORANGE, note
 
 LABELS = {"free_flight": "time between two collisions of a particle ($t$)",
           "pair_flight": "time between two collisions of a pair ($t$)",
@@ -47,4 +47,4 @@ def draw(result, names, panels):
         if name == "closing_speed" and (T := variance(result)) is not None:
             ax.plot(x, x / (2 * T) * np.exp(-x ** 2 / (4 * T)), "--", color=ORANGE, lw=1, label="equilibrium")
         ax.set(xscale="log", yscale="log", xlabel=LABELS[name], ylabel="density")
-    axes[0].set_title(f"counted at $t={table['from']:.5g}$ to ${table['until']:.5g}$", loc="right", fontsize=8)
+    note(axes[0], f"counted at $t={table['from']:.5g}$ to ${table['until']:.5g}$")

@@ -4,7 +4,7 @@ and Young's estimate and with the exact number of particles in free space, or at
 import numpy as np
 
 from .scenarios import wilson
-from .style import shades
+from .style import shaded
 
 
 def pictures(result, _theory, _units):
@@ -55,7 +55,7 @@ def half(points):
 
 def draw(curves, walled, panels):
     left, right = panels(1, 2, figsize=(7.4, 3.4))
-    for (eps, points), colour in zip(curves.items(), shades(len(curves))):
+    for (eps, points), colour in shaded(curves.items()):
         number = np.array([n for n, _, _ in points])
         share, low, high = np.array([wilson(hits, count) for _, hits, count in points]).T
         left.errorbar(number * (1 - eps), share, yerr=[share - low, high - share], fmt="o-", ms=3, lw=0.9, capsize=2,

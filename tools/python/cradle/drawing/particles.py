@@ -2,7 +2,7 @@
 collapse against the time that is left to it, in which everything is a power."""
 import numpy as np
 
-from .style import BLUE, ORANGE, RED, shades
+from .style import BLUE, ORANGE, RED, shaded
 
 FEW_PARTICLES = 20       # up to here every particle has a path of its own
 
@@ -26,7 +26,7 @@ def draw_particles(result, units, panels):
     for snapshot in result.snapshots:
         for particle, x in zip(snapshot["index"], snapshot["x"]):
             paths.setdefault(int(particle), []).append((snapshot["time"], x))
-    for (particle, path), colour in zip(sorted(paths.items()), shades(len(paths))):
+    for (particle, path), colour in shaded(sorted(paths.items())):
         axes[0].plot(*(np.array(path) / (units.t, units.x)).T, "o-", ms=3, color=colour, label=f"particle {particle}")
     left = time_to_collapse(result) if shrinking else None
     series = result.means

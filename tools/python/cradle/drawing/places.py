@@ -2,7 +2,7 @@
 sweep those of all points, a panel for each time. The line is that of independent places, 1, of which identical elastic
 particles in equilibrium are an example."""
 from .averages import draw_points as draw_mean
-from .style import ORANGE, beside, distinct, shades, thinned
+from .style import ORANGE, beside, distinct, shaded, shades, thinned
 from .sweep import label_of
 
 PICTURES = (("structure_factor", "structure", "s", "k", "wave number $k$ ($1/l$)", "structure factor $S(k)$",
@@ -25,8 +25,7 @@ def mean_of(quantity):
 
 def draw(result, group, name, along, xlabel, ylabel, scales, panels):
     ax = panels(figsize=(5.6, 3.2))
-    at = thinned(getattr(result, group))
-    for table, colour in zip(at, shades(len(at))):
+    for table, colour in shaded(thinned(getattr(result, group))):
         ax.plot(table[along], mean_of(table[name]), color=colour, lw=1, label=f"$t={table['time']:.5g}$")
     if mean := getattr(result, group + "_average"):
         draw_mean(ax, mean[along], mean, name, color="k", label=f"${mean['from']:.5g}$ to ${mean['until']:.5g}$")

@@ -2,7 +2,7 @@
 (paper, section VI), and when an inelastic shock collapses (against N_c/(2 u0), section III)."""
 import numpy as np
 
-from .style import BLUE, GREY, RED, SKY, shades
+from .style import BLUE, GREY, RED, SKY, shaded, shades
 
 REGIMES = {1: "apart", 2: "through each other", 3: "stuck last", 0: "one cluster only"}  # core/observe/scenario.hpp
 ENOUGH = 10  # replicas of a point of which shares are drawn
@@ -100,7 +100,7 @@ def draw_collapse(result, panels):
     """Distributions of t_c over replicas, in units of the time when N_c particles are engaged."""
     points = [point for point in result.points if known_times(point).size]
     ax = panels(figsize=(5.2, 3.6))
-    for point, colour in zip(points, shades(len(points))):
+    for point, colour in shaded(points):
         restitution, speed = point.setting("law", "restitution"), point.setting("initial", "speed", 0.5)
         spacing = point.setting("initial", "spacing", 1.0)
         engaged = 2 / (1 - 4 / np.pi * np.arctan(np.sqrt(restitution))) * spacing / (2 * speed)

@@ -1,7 +1,7 @@
 """Fig. 3: four nested zooms into a core that positions cannot resolve, drawn from the gaps."""
 import numpy as np
 
-from .style import BLUE, RED, plt
+from .style import BLUE, RED, note, plt
 
 CORE_GAP = 1e-2       # of the spacing: a quarter of the gaps below this makes a core
 CORE_SHARE = 16       # the innermost zoom holds one particle in so many
@@ -82,7 +82,7 @@ def draw_structure(snapshot, units, panels):
             dotted = dotted or enlarged
         ax.set(xlabel=units.label(rf"$x-{reference}$", rf"$(x-{reference})\,/\,l$"), ylabel=units.velocity_label())
         ax.ticklabel_format(axis="both", style="sci", scilimits=(-2, 3), useMathText=True)
-        ax.set_title(rf"$\bf({'abcd'[k]})$  {int(inside.sum())} particles", fontsize=8, loc="right")
+        note(ax, rf"$\bf({'abcd'[k]})$  {int(inside.sum())} particles")
     length = units.label("", r"$\,l$")
     place = snapshot["x"][particle] / units.x
     title = (rf"$t={snapshot['time'] / units.t:.6g}$,  ${reference}={place:.6g}${length},  "

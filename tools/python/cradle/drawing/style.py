@@ -143,6 +143,23 @@ def shades(count):
     return plt.get_cmap("viridis")(np.linspace(*shade_range(), max(count, 2)))[:count]
 
 
+def shaded(items):
+    """Items, each with its shade."""
+    items = list(items)
+    return zip(items, shades(len(items)))
+
+
+def times_of(groups, units):
+    """The shades and the names of the times of snapshots or profiles, by time and in its order."""
+    times = sorted({group["time"] for group in groups})
+    return dict(shaded(times)), {time: rf"$t={time / units.t:.5g}$" for time in times}
+
+
+def note(ax, text):
+    """Adds a line above a panel, on the right."""
+    ax.set_title(text, loc="right", fontsize=8)
+
+
 def shade_map():
     """The same as a colour map."""
     return matplotlib.colors.ListedColormap(plt.get_cmap("viridis")(np.linspace(*shade_range(), 256)))

@@ -3,7 +3,7 @@ over time, and the linear model of section VI: equations (9) and (10) with 2L of
 width is the length over which u+ falls from u0 to u_crit at its steepest slope; (13) counts the fall to 0."""
 import numpy as np
 
-from .style import BLUE, GREY, ORANGE, beside
+from .style import BLUE, GREY, ORANGE, beside, note
 
 EXCESS = np.sqrt(6.0)  # k = n~/n0, where (12) and (13) agree
 
@@ -46,8 +46,8 @@ def draw_zone(result, units, panels):
         density.plot(x, zone[f"density_{name}"] * spacing, **dots)
     mass.plot(x, zone["mass_density"] * spacing, drawstyle="steps-mid", color=BLUE)
     mass.set_yscale("log")
-    mass.set_title("peaks: the heavy clusters; shaded: $2L$ of Eq. (13)" if formed else
-                   "no zone yet: $u_+$ has not fallen to $u_\\mathrm{crit}$", loc="right", fontsize=8)
+    note(mass, "peaks: the heavy clusters; shaded: $2L$ of Eq. (13)" if formed else
+         "no zone yet: $u_+$ has not fallen to $u_\\mathrm{crit}$")
     if formed:
         for ax in (velocity, density, mass):
             ax.axvspan(-half, half, color=GREY, alpha=0.18, lw=0, zorder=0)
@@ -64,8 +64,7 @@ def draw_zone(result, units, panels):
              xlabel=units.position_label())
     beside(velocity), beside(density)
     begin, end = zone["from"] / units.t, zone["until"] / units.t
-    velocity.set_title(f"average over $t={begin:.5g}$ to ${end:.5g}$, {zone['samples']} samples", loc="right",
-                       fontsize=8)
+    note(velocity, f"average over $t={begin:.5g}$ to ${end:.5g}$, {zone['samples']} samples")
 
 
 def draw_width(ax, measured, error, longer, model, top):

@@ -61,14 +61,12 @@ LiveRun::LiveRun(const std::string& checkpoint, const LiveOptions& options)
 }
 
 template <class F> void LiveRun::with_threads(const F& f) {
+  struct AtEnd {
+    ~AtEnd() { executor.reset(); }
+    std::optional<Threads>& executor;
+  } const at_end{executor_};
   if (threads_ > 1) executor_.emplace(threads_);
-  try {
-    f();
-  } catch (...) {
-    executor_.reset();
-    throw;
-  }
-  executor_.reset();
+  f();
 }
 
 void LiveRun::advance(const Decimal& until) {

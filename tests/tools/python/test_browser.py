@@ -30,31 +30,23 @@ class Reader(unittest.TestCase):
         self.browser.emulate(scheme, media)
         self.browser.load(f"{make.__name__}.html")
 
-    def test_pages_load_without_a_word_and_without_a_request(self):
-        for make in small.ALL:
-            for scheme in ("light", "dark"):
+    def test_pages_load_without_a_word_and_without_a_request_and_fit_a_window_and_a_telephone(self):
+        self.addCleanup(self.browser.resize, 1100)
+        for scheme, width in (("light", 1200), ("dark", 390)):
+            self.browser.resize(width)
+            for make in small.ALL:
                 self.load(make, scheme)
                 self.assertEqual(self.browser.complaints, [], make.__name__)
                 self.assertEqual(self.browser.outside(), [])
                 files = [url for url in self.browser.requests if url.startswith("file://")]
                 self.assertEqual(len(files), 1, "the page itself, and nothing beside it")
-                self.browser.shot(f"{make.__name__}-{scheme}")
-
-    def test_no_page_is_wider_than_the_window_or_a_telephone(self):
-        for width in (1200, 390):
-            self.browser.resize(width)
-            for make in small.ALL:
-                self.load(make)
                 self.assertLessEqual(self.browser.evaluate("document.documentElement.scrollWidth"), width,
                                      make.__name__)
-        self.browser.resize(1100)
-
-    def test_every_picture_is_there(self):
-        self.load(small.shock)
-        sizes = self.browser.evaluate(
-            "Array.from(document.querySelectorAll('figure > img.light'), p => p.getBoundingClientRect().height)")
-        self.assertEqual(len(sizes), len(cradle.plot.names(small.shock())))
-        self.assertGreater(min(sizes), 200)
+                heights = self.browser.evaluate("Array.from(document.querySelectorAll('figure > img." + scheme
+                                                + "'), picture => picture.getBoundingClientRect().height)")
+                self.assertEqual(len(heights), len(cradle.plot.names(make())))
+                self.assertGreater(min(heights), width / 6, make.__name__)
+                self.browser.shot(f"{make.__name__}-{scheme}")
 
     def test_tables_sort_up_and_down(self):
         self.load(small.sweep)

@@ -8,7 +8,6 @@ of a pixel, where doubles that are sums of local terms are good to 1e-9 of one.
 """
 import base64
 import itertools
-import json
 import math
 import pathlib
 import tempfile
@@ -24,7 +23,6 @@ import browser
 import cradle
 from cradle import microscope
 from cradle.page import page
-from cradle.scene import scene_text
 
 HUNDREDTH = 0.01  # of a pixel
 
@@ -69,12 +67,13 @@ class Microscope(browser.Browser):
 # Results
 
 
-def rational_collapse(least_gap=Fraction(1, 10**290)):
-    """collapse3 in fractions: [(left, time, closing speed, positions, velocities after)], and the initial state."""
+def rational_collapse(count):
+    """The first collisions of collapse3 in fractions: [(left, time, closing speed, positions, velocities after)], and
+    the initial state."""
     restitution = Fraction(1, 20)
     x, v, t = [Fraction(0), Fraction(1), Fraction(3)], [Fraction(1), Fraction(0), Fraction(-1)], Fraction(0)
     start, collisions = (list(x), list(v)), []
-    while True:
+    while len(collisions) < count:
         due = [((x[i + 1] - x[i]) / (v[i] - v[i + 1]), i) for i in (0, 1)
                if v[i] > v[i + 1] and not (collisions and collisions[-1][0] == i)]
         step, left = min(due)
@@ -86,55 +85,20 @@ def rational_collapse(least_gap=Fraction(1, 10**290)):
         v[left] -= kick
         v[left + 1] += kick
         collisions.append((left, t, w, list(x), list(v)))
-        if min(x[i + 1] - x[i] for i in (0, 1) if i != left) < least_gap:
-            return start, collisions
+    return start, collisions
 
 
-def write_result(path, scene, start, left, right, intervals, speeds, outcome="reached the end", **collapse):
-    """A result file with events and the initial state alone; start: positions and velocities."""
-    with h5py.File(path, "w") as file:
-        file.attrs.update({"scene": scene_text(scene), "name": scene["title"], "outcome": outcome})
-        for name, column in (("left", left), ("right", right), ("kind", np.zeros(len(left)))):
-            file[f"events/{name}"] = np.asarray(column, np.uint64)
-        file["events/interval"], file["events/closing_speed"] = np.asarray(intervals), np.asarray(speeds)
-        x, v = (np.asarray(column, float) for column in start)
-        for name, column in (("index", np.arange(len(x), dtype=np.uint64)), ("x", x), ("v", v), ("m", np.ones(len(x))),
-                             ("gap", np.append(np.diff(x), np.nan))):
-            file[f"initial/{name}"] = column
-        file["initial"].attrs["circumference"] = 0.0
-        if collapse:
-            file.create_group("collapse").attrs.update(collapse)
-    return cradle.Result(str(path), h5py.File(path, "r"))
-
-
-def collapse_result(folder, collisions):
-    scene = {"title": "collapse3", "law": {"type": "inelastic", "restitution": 0.05, "cutoff": 0},
-             "initial": {"type": "list", "x": [0, 1, 3], "v": [1, 0, -1]}, "run": {"until": 2, "collapse": "stop"}}
-    times = [collision[1] for collision in collisions]
-    return write_result(folder / "collapse3.h5", scene, ([0, 1, 3], [1, 0, -1]),
-                        [c[0] for c in collisions], [c[0] + 1 for c in collisions],
-                        [float(b - a) for a, b in zip([0] + times, times)], [float(c[2]) for c in collisions],
-                        "inelastic collapse", time=12 / 7)
-
-
-def rows_result(folder, half):
-    """Collisions of 2 half elastic particles in two rows at speeds 1/2 and -1/2: world lines are exchanged at
-    collisions, so that lines i and j of the two rows, straight all along, cross at (x_j - x_i); particle i + j is then
-    on the left. The result, and time, place and left particle of every collision."""
-    scene = {"title": "crossing rows", "law": {"type": "inelastic", "restitution": 1.0, "cutoff": 0},
-             "initial": {"type": "rows", "particles": 2 * half, "speed": 0.5, "spacing": 1, "perturbation": 0.05,
-                         "seed": 7, "replica": 0}, "run": {"until": 2.0 * half}}
-    shift = np.random.default_rng(7).uniform(-0.05, 0.05, 2 * half)
-    x = np.arange(2 * half) - half + 0.5 + shift
+def crossings(x):
+    """Time, place and left particle of every collision of elastic particles in two rows at speeds 1/2 and -1/2, from
+    their places at the start: world lines are exchanged at collisions, so that lines i and j of the two rows, straight
+    all along, cross at (x_j - x_i); particle i + j is then on the left."""
+    half = len(x) // 2
     moments = (x[None, half:] - x[:half, None]).ravel()
+    order = np.argsort(moments, kind="stable")
     places = ((x[None, half:] + x[:half, None]) / 2).ravel()
     # Of the left row its particle i has i lines of its own row below it, and those of the right row that it has met.
     below = (np.arange(half)[:, None] + np.arange(half)[None, :]).ravel()
-    order = np.argsort(moments, kind="stable")
-    moments, places, left = moments[order], places[order], below[order]
-    result = write_result(folder / f"rows{half}.h5", scene, (x, np.repeat([0.5, -0.5], half)), left, left + 1,
-                          np.diff(moments, prepend=0.0), np.ones(len(moments)))
-    return result, moments, places, left
+    return moments[order], places[order], below[order]
 
 
 def unpack(packed):
@@ -142,14 +106,6 @@ def unpack(packed):
     kind = np.dtype("<" + packed["type"])
     planes = np.frombuffer(zlib.decompress(base64.b64decode(packed["deflate"])), np.uint8)
     return planes.reshape(kind.itemsize, packed["length"]).T.copy().view(kind).ravel()
-
-
-def write_page(folder, result, name):
-    """A page with the microscope of a report alone; (its path, the data)."""
-    path = folder / f"{name}.html"
-    path.write_text("<!doctype html><meta charset=utf-8><meta name=color-scheme content='light dark'><title>microscope"
-                    f"</title><style>body{{margin:12px}}</style>{page.microscope(result)}", "utf-8")
-    return path, microscope.data(result)
 
 
 class Data(unittest.TestCase):
@@ -175,12 +131,6 @@ class Data(unittest.TestCase):
                 change()
                 self.assertIsNone(microscope.data(cradle.Result("empty.h5", file)))
 
-    def test_same_result_same_bytes(self):
-        with tempfile.TemporaryDirectory() as folder:
-            result, *_ = rows_result(pathlib.Path(folder), 30)
-            with result:
-                self.assertEqual(json.dumps(microscope.data(result)), json.dumps(microscope.data(result)))
-
 
 @unittest.skipUnless(browser.find(), "no Chromium (Debian: chromium)")
 class InBrowser(unittest.TestCase):
@@ -189,11 +139,27 @@ class InBrowser(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         cls.addClassCleanup(folder.cleanup)
         cls.folder = pathlib.Path(folder.name)
-        cls.start, cls.collisions = rational_collapse()
-        with collapse_result(cls.folder, cls.collisions) as result:
-            cls.page, cls.data = write_page(cls.folder, result, "collapse3")
         cls.browser = Microscope(height=760)
         cls.addClassCleanup(cls.browser.__exit__)
+        cls.page, result, _ = cls.made("collapse3", "collapse3", {})
+        cls.start, cls.collisions = rational_collapse(len(result.events.left))
+
+    @classmethod
+    def made(cls, name, scene, keys):
+        """A page with the microscope of a report alone, of a run of the program; its result, and the microscope's data
+        of it."""
+        result = cradle.run(scene, {"output.events": True} | keys, output=cls.folder / f"{name}.h5")
+        cls.addClassCleanup(result.close)
+        path = cls.folder / f"{name}.html"
+        path.write_text("<!doctype html><meta charset=utf-8><meta name=color-scheme content='light dark'><title>"
+                        f"microscope</title><style>body{{margin:12px}}</style>{page.microscope(result)}", "utf-8")
+        return path, result, microscope.data(result)
+
+    def opened(self, *run):
+        """The result and the data of what is made, in an open page."""
+        path, *made = self.made(*run)
+        self.browser.open(path)
+        return made
 
     def setUp(self):
         self.browser.resize(1100, 760)
@@ -202,12 +168,6 @@ class InBrowser(unittest.TestCase):
     def tearDown(self):
         """No exception, no word on the console, no request but for the page itself."""
         self.assertEqual((self.browser.complaints, self.browser.outside()), ([], []))
-
-    def opened(self, result, name):
-        """Opens a page with this result; the microscope's data of it."""
-        page, data = write_page(self.folder, result, name)
-        self.browser.open(page)
-        return data
 
     def m(self, expression):
         """Of the page's handle on the microscope."""
@@ -289,12 +249,11 @@ class InBrowser(unittest.TestCase):
 
     def test_what_doubles_do_not_hold_is_left_out_and_reported(self):
         """A collapse to gaps of 1e-700, whose last intervals and speeds are nothing in doubles."""
-        self.collisions = rational_collapse(Fraction(1, 10**700))[1]
-        with collapse_result(self.folder, self.collisions) as result:
-            data = self.opened(result, "deeper")
+        _, data = self.opened("deeper", "collapse3", {"run.precision": "mpfr", "run.digits": 50,
+                                                      "run.stop_gap": "1e-700"})
         self.assertLess(data["collisions"], data["total"])
         self.assertGreater(data["collisions"], 325)
-        self.collisions = self.collisions[:data["collisions"]]
+        self.collisions = rational_collapse(data["collisions"])[1]
         self.m("actions.deepest()")
         self.browser.until("cradleMicroscopeTest.readout()"
                            f".endsWith('the first {data['collisions']} collisions are here')")
@@ -471,9 +430,11 @@ class InBrowser(unittest.TestCase):
     # Many collisions
 
     def test_a_million_collisions(self):
-        result, moments, places, left = rows_result(self.folder, 1000)
-        with result:
-            self.assertEqual(self.opened(result, "million")["collisions"], 1_000_000)
+        result, data = self.opened("million", "fig2", {
+            "law.restitution": 1, "law.cutoff": 0, "initial.particles": 2000, "initial.perturbation": 0.05,
+            "run.until": 2000, "output.snapshots": [], "output.profiles.times": []})
+        self.assertEqual(data["collisions"], 1_000_000)
+        moments, places, left = crossings(result.table("initial").x.values)
         self.assertLess((self.folder / "million.html").stat().st_size, 15e6)
         # What is drawn of the whole: collisions in the lens where the rows overlap, nothing beside them.
         view = self.view()
@@ -501,13 +462,7 @@ class InBrowser(unittest.TestCase):
                 seen += 1
             self.assertGreater(seen, 8)
 
-    # With the program
-
-    def program_result(self, name, scene, keys):
-        """The result of a run of the program, and the microscope's data of it, in an open page."""
-        result = cradle.run(scene, keys, output=self.folder / f"{name}.h5")
-        self.addCleanup(result.close)
-        return result, self.opened(result, name)
+    # Any run
 
     def assert_gaps_of_snapshots(self, result, bound):
         """The gaps right after the collision before a snapshot, flown until then, are the snapshot's."""
@@ -577,15 +532,15 @@ class InBrowser(unittest.TestCase):
                 ("sticky-ring", "cooling", 1e-8, ring),
                 ("wet-ring", "cooling", 1e-8, ring | {"law.type": "wet", "law.loss": 0.03})):
             with self.subTest(name):
-                result, data = self.program_result(name, scene, keys | {"output.events": True})
+                result, data = self.opened(name, scene, keys)
                 self.assertEqual(data["kind"], "collisions")
                 self.assert_gaps_of_snapshots(result, bound)
                 self.assert_charts_are_where_positions_are(result)
 
     def test_snapshots_alone(self):
-        result, data = self.program_result("shots", "fig2", {
+        result, data = self.opened("shots", "fig2", {
             "initial.particles": 400, "run.until": 300, "output.snapshots": [100, 200, 300],
-            "output.profiles.times": [10]})
+            "output.profiles.times": [10], "output.events": False})
         self.assertEqual(data["kind"], "snapshots")
         self.browser.shot("microscope-snapshots")
         shot = result.file["snapshots/0000"]
@@ -603,9 +558,8 @@ class InBrowser(unittest.TestCase):
             self.assertNotIn(key, offered, "of collisions, which snapshots do not have")
 
     def test_a_core_is_drawn_from_gaps_where_positions_do_not_serve(self):
-        result, _ = self.program_result("core", "fig2", {
-            "initial.particles": 400, "law.restitution": 0.98, "run.until": 325, "output.events": True,
-            "output.profiles.times": [10]})
+        result, _ = self.opened("core", "fig2", {
+            "initial.particles": 400, "law.restitution": 0.98, "run.until": 325, "output.profiles.times": [10]})
         count = len(result.file["events/left"])
         for depth in (1e-3, 1e-9):
             event = self.browser.run(f"""(d => d.findIndex((x, e) => e > {0.9 * count} && x > -12 &&

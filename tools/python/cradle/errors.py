@@ -1,9 +1,11 @@
 """The exception for all errors, and the meanings of the program's exit statuses."""
 from __future__ import annotations
 
+import importlib
 import os
 import re
 import sys
+from typing import Any
 
 DONE, DIFFERS, BAD_INPUT, COLLAPSE, BAD_FILE, LOST = 0, 1, 2, 3, 4, 5
 
@@ -45,6 +47,14 @@ def in_python(message: str) -> str:
     parts[::2] = [re.sub(r"(?<![\w-])--([a-z]+)", r"\1", part.replace("--force", "force=True").replace(
         "-o FILE", "output").replace("--to DIR", "folder")) for part in parts[::2]]
     return "`".join(parts)
+
+
+def imported(module: str) -> Any:
+    """A module that not everybody has. Raises Error without it."""
+    try:
+        return importlib.import_module(module)
+    except ImportError:
+        raise missing(module) from None
 
 
 def missing(module: str) -> Error:

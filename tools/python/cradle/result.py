@@ -229,3 +229,10 @@ class Result:
         about = self.attributes
         end = f"{about.get('replicas', 0)} replicas" if self.label else f"{self.outcome}; {about.get('precision', '')}"
         return f"<{self.kind} {self.label or about.get('name', '')}: {end}; {', '.join(held) or 'empty'}>"
+
+
+def fronts(result: Result) -> list[str]:
+    """The fronts that run into something: none towards a wall, which is all that there is to reach, or of a gas."""
+    if result.word("initial", "type") == "gas":
+        return []
+    return [f"front_{side}" for side in ("left", "right") if side not in result.scene.get("walls", {})]

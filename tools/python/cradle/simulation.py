@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from .commands import Scene, Settings, assignments, source_of
 from .compiled import module, threads_of
-from .errors import BAD_INPUT, Error, callable_of, path_of
-from .frames import imported
+from .errors import BAD_INPUT, Error, callable_of, imported, path_of
 from .result import Result, open
 from .scene import parse_toml
 from .timer import EXACT, Time, Timer, decimal_of
@@ -248,7 +247,8 @@ class Simulation:
         return getattr(self._run, f"{name}_text")
 
     def mpmath(self, name: str, digits: int | None = None):
-        """What decimals() gives as mpmath.mpf (one, or a list), with these digits, by default those of the longest text."""
+        """What decimals() gives as mpmath.mpf (one, or a list), with these digits, by default those of the longest
+        text."""
         mpmath = imported("mpmath")
         texts = self.decimals(name)
         one = isinstance(texts, str)

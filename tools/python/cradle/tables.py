@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any
 import h5py
 import numpy as np
 
-from .errors import BAD_FILE, BAD_INPUT, Error
-from .frames import data_frame, data_set, imported
+from .errors import BAD_FILE, BAD_INPUT, Error, imported
 
 if TYPE_CHECKING:
     import pandas
@@ -185,15 +184,41 @@ class Table(Mapping):
     def _ipython_key_completions_(self) -> list[str]:
         return list(self)
 
+    def _flat(self, before: str = "") -> Iterator[tuple[str, Column]]:
+        """Names and columns, those of inner tables too."""
+        for name, item in self.items():
+            if isinstance(item, Column):
+                yield before + name, item
+            else:
+                yield from item._flat(f"{before}{name}.")
+
     def to_pandas(self) -> pandas.DataFrame:
         """A pandas.DataFrame of all columns, those of inner tables as `energy.mean`, of columns of width two `x[0]`,
         `x[1]`; shorter ones (gaps) end with NaN. `frame.attrs["units"]` has the units by column."""
-        return data_frame(self)
+        pandas = imported("pandas")
+        columns, units = {}, {}
+        for name, column in self._flat():
+            wide = [(f"{name}[{k}]", side) for k, side in enumerate(column.values.T)] if column.ndim > 1 else []
+            for label, values in wide or [(name, column.values)]:
+                columns[label], units[label] = pandas.Series(values), column.unit
+        frame = pandas.DataFrame(columns)
+        frame.attrs.update(self.attributes, units=units)
+        return frame
 
     def to_xarray(self) -> xarray.Dataset:
         """An xarray.Dataset of all columns, those of inner tables as `energy.mean`, over `time`, `index`, `x` or the
         row's number, with units as attributes."""
-        return data_set(self)
+        xarray = imported("xarray")
+        columns = dict(self._flat())
+        length = max((len(column) for column in columns.values()), default=0)
+        along = next((name for name in ("time", "index", "x") if name in columns and columns[name].ndim == 1), "row")
+        variables = {}
+        for name, column in columns.items():
+            # Gaps lie between particles: one fewer.
+            dims = (along if len(column) == length else f"between_{along}", "side")[:column.ndim]
+            about = {key: value for key, value in (("units", column.unit), ("long_name", column.description)) if value}
+            variables[name] = (dims, column.values, about)
+        return xarray.Dataset(variables, attrs=dict(self.attributes))
 
     def __repr__(self) -> str:
         lines = [f"{self._place}:"]

@@ -2,7 +2,7 @@
 thermal walls the exact one: they pass each other, so J = rho (T1 - T2) / (sqrt(pi/2) (T1^-1/2 + T2^-1/2)), m = 1."""
 import numpy as np
 
-from .style import BLUE, ORANGE, stacked
+from .style import BLUE, ORANGE, note
 
 PANELS = (("density", "density $n$ ($1/l$)"), ("velocity", "mean velocity\n$u$ ($l/t$)"),
           ("temperature", "temperature\n$T$ ($m\\,l^2/t^2$)"), ("heat_current", "heat current\n$J$ ($m\\,l^2/t^3$)"))
@@ -40,17 +40,14 @@ def exact_current(result):
     return np.mean(density) * (left - right) / (np.sqrt(np.pi / 2) * (left ** -0.5 + right ** -0.5))
 
 
-def draw(result, axes):
+def draw(result, panels):
     table = result.averages
     x = np.asarray(table["x"])
-    figure, axes = stacked(axes, len(PANELS), height=1.9, sharex=True)
+    axes = panels.stacked(len(PANELS), height=1.9, sharex=True)
     for ax, (name, label) in zip(axes, PANELS):
         draw_points(ax, x, table, name, color=BLUE)
         ax.set_ylabel(label)
     if (current := exact_current(result)) is not None:
         axes[-1].axhline(current, color=ORANGE, lw=1, ls="--", label=f"exact, {current:.4g}")
-        axes[-1].legend(loc="best")
-    axes[0].set_title(f"averages over $t={table['from']:.5g}$ to ${table['until']:.5g}$, bars: standard errors",
-                      loc="right", fontsize=8)
+    note(axes[0], f"averages over $t={table['from']:.5g}$ to ${table['until']:.5g}$, bars: standard errors")
     axes[-1].set_xlabel("position $x$ ($l$)")
-    return figure

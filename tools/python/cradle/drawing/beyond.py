@@ -2,7 +2,7 @@
 sticky gas, the dense core (core/observe/dense_core.hpp), and the rate of collisions in it."""
 import numpy as np
 
-from .style import BLUE, GREY, ORANGE, distinct, lettered, plt, shades, stacked, subplots
+from .style import BLUE, GREY, ORANGE, distinct, plt, shaded, shades
 
 MANY = 20         # snapshots that make a picture in space and time
 PATHS = 80        # of particles in it
@@ -108,11 +108,11 @@ def positive(ax, time, values, **how):
 
 # ---- a run
 
-def draw_run(result, units, axes):
+def draw_run(result, units, panels):
     series, scale = result.means, slowest(result)
     late = series["time"] >= onset(result)
     time = series["time"][late] / units.t
-    figure, axes = stacked(axes, 4, width=5.8, height=2.1, sharex=True)
+    axes = panels.stacked(4, width=5.8, height=2.1, sharex=True)
     draw_excess(axes[0], result, onset(result), units, BLUE)
     positive(axes[1], time, series["core_velocity_range"][late] / (scale or units.v), color=BLUE,
              label="velocity range" + (rf" / {scale:.4g}" if scale else ""))
@@ -128,10 +128,6 @@ def draw_run(result, units, axes):
     axes[1].set_ylabel("core")
     axes[2].set_ylabel(units.label("core", r"core$\,/\,l$"))
     axes[3].set(ylabel=units.rate_label(), xlabel=units.time_label())
-    for ax in axes[1:]:
-        if ax.get_lines():
-            ax.legend(loc="best")
-    return figure
 
 
 def core_of(snapshot):
@@ -147,10 +143,10 @@ def core_of(snapshot):
     return np.arange(inside[0], inside[-1] + 1), snapshot["gap"][inside[0]:inside[-1]]
 
 
-def draw_distributions(snapshots, scale, units, axes):
-    figure, (left, right) = subplots(axes, 1, 2, figsize=(7.2, 3.4))
+def draw_distributions(snapshots, scale, units, panels):
+    left, right = panels(1, 2, figsize=(7.2, 3.4), letters=True)
     chosen = snapshots[::max(1, len(snapshots) // 6)]
-    for snapshot, colour in zip(chosen, shades(len(chosen))):
+    for snapshot, colour in shaded(chosen):
         particles, gap = core_of(snapshot)
         v = (snapshot["v"][particles] - np.median(snapshot["v"][particles])) / scale
         density, edges = np.histogram(v, bins=50, range=(-0.75, 0.75))
@@ -163,36 +159,31 @@ def draw_distributions(snapshots, scale, units, axes):
     gap = np.geomspace(1e-3, 30, 200)
     right.plot(gap, np.exp(-gap), "k:", label=r"$e^{-g/\langle g\rangle}$, no order")
     right.set(xscale="log", yscale="log", ylim=(1e-5, 10), xlabel=r"gap $g\,/\,\langle g\rangle$")
-    left.legend(loc="best")
-    right.legend(loc="best")
-    lettered((left, right))
-    return figure
 
 
-def draw_spacetime(snapshots, units, axes):
+def draw_spacetime(snapshots, units, panels):
     """Paths of particles that are evenly spread over the core at the end, relative to the one in its middle.
     Identical particles keep their order."""
     core, _ = core_of(snapshots[-1])
     particles = snapshots[-1]["index"][core][::max(1, len(core) // PATHS)]
-    figure, ax = subplots(axes, figsize=(5.8, 4.6))
+    ax = panels(figsize=(5.8, 4.6))
     time = np.array([s["time"] for s in snapshots]) / units.t
     middle = int(snapshots[-1]["index"][core[len(core) // 2]])
     places = []
     for s in snapshots:
         at = dict(zip(s["index"].tolist(), s["x"] / units.x))
         places.append({particle: x - at.get(middle, np.nan) for particle, x in at.items()})
-    for particle, colour in zip(particles.tolist(), shades(len(particles))):
+    for particle, colour in shaded(particles.tolist()):
         ax.plot(time, [at.get(particle, np.nan) for at in places], color=colour, lw=0.6)
     reach = max(np.ptp(s["x"][core_of(s)[0]]) for s in snapshots) / units.x
     ax.set(xlabel=units.time_label(), xlim=(time[0], time[-1]), ylim=(-0.7 * reach, 0.7 * reach),
            ylabel=units.label(rf"$x-x_{{{middle}}}$", rf"$(x-x_{{{middle}}})\,/\,l$"))
-    return figure
 
 
 # ---- a sweep
 
-def draw_points(points, since, units, axes):
-    figure, axes = stacked(axes, 3, width=7.2, height=2.7, sharex=True)
+def draw_points(points, since, units, panels):
+    axes = panels.stacked(3, width=7.2, height=2.7, sharex=True)
     replaced = [p for p in points if p.word("run", "collapse") in ("merge", "contact-time")]
     others = [p for p in points if p not in replaced]
     how = [(p, colour, "-") for p, colour in zip(others, shades(len(others)))]
@@ -210,7 +201,6 @@ def draw_points(points, since, units, axes):
     length = "length with half of the mass"
     axes[2].set(ylabel=units.label(length, length + r"$\,/\,l$"), xlabel=units.time_label())
     axes[0].legend(loc="upper left", bbox_to_anchor=(1.01, 1))
-    return figure
 
 
 def with_rates(points, since, units):
@@ -218,16 +208,14 @@ def with_rates(points, since, units):
             and np.isfinite(rates(p, since, units)[0][0])]
 
 
-def draw_rates(points, since, units, axes):
+def draw_rates(points, since, units, panels):
     points = sorted(with_rates(points, since, units), key=slowest)
     cutoff = np.array([slowest(p) for p in points])
     found = np.array([rates(p, since, units) for p in points])
-    figure, ax = subplots(axes, figsize=(5.2, 4))
+    ax = panels(figsize=(5.2, 4))
     for k, (name, colour) in enumerate((("dissipative", BLUE), ("elastic", ORANGE))):
         ax.errorbar(cutoff, found[:, k, 0], yerr=found[:, k, 1], fmt="o-", color=colour, capsize=3,
                     label=name + ", and how it varies")
     ax.plot(cutoff, [most_frequent(p, slowest(p)) for p in points], "k:",
             label=r"all that arrives lost at the cut-off, $2u_0^2/(1-r^2)\delta^2$")
     ax.set(xscale="log", yscale="log", xlabel=r"cut-off $\delta$", ylabel=units.rate_label())
-    ax.legend(loc="best")
-    return figure

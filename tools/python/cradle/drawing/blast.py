@@ -2,7 +2,7 @@
 solution of Euler's equations for gamma = 3 (derived in core/theory/blast.hpp; arXiv:2010.15868)."""
 import numpy as np
 
-from .style import BLUE, GREY, power, shades, subplots
+from .style import BLUE, GREY, power, shades
 
 AMPLITUDE = 1071 / 152
 
@@ -27,34 +27,31 @@ def solution(size=400):
     return xi, density, xi * v, (xi * v) ** 2 * (1 - v) / (3 * v - 1)
 
 
-def draw(result, axes):
+def draw(result, panels):
     energy, rho = gas(result)
-    figure, axes = subplots(axes, 2, 2, figsize=(7.2, 5.6))
+    axes = panels(2, 2, figsize=(7.2, 5.6))
     draw_front(axes[0, 0], result, energy, rho)
-    xi, density, velocity, temperature = solution()
+    others, (xi, *solutions) = axes.flat[1:], solution()
     for profile, spread, colour in zip(result.mean_profiles, result.profiles, shades(len(result.profiles))):
         time = profile["time"]
         front = np.cbrt(AMPLITUDE * energy * time ** 2 / rho)
         speed = 2 * front / (3 * time)
         place = profile["x"] / front
         shown = np.abs(place) < 1.3
-        for ax, name, unit in ((axes[0, 1], "mass_density", rho), (axes[1, 0], "velocity", speed),
-                               (axes[1, 1], "temperature", speed ** 2)):
+        for ax, name, unit in zip(others, ("mass_density", "velocity", "temperature"), (rho, speed, speed ** 2)):
             mean = profile[name] / unit
             ax.plot(place[shown], mean[shown], color=colour, lw=0.9, label=f"$t={power(time)}$")
             if result.replicas:
                 error = spread[name]["sem"] / unit
                 ax.fill_between(place[shown], (mean - error)[shown], (mean + error)[shown], color=colour, alpha=0.2,
                                 lw=0)
-    for ax, exact, sign, label, top in ((axes[0, 1], density, 1, r"density $\rho\,/\,\rho_0$", 2.4),
-                                        (axes[1, 0], velocity, -1, r"velocity $u\,/\,\dot R$", 0.75),
-                                        (axes[1, 1], temperature, 1, r"temperature $\theta\,/\,\dot R^2$", 1.5)):
-        for side in (1, -1):
-            ax.plot(side * xi, exact if side == 1 else sign * exact, "k--", lw=1, zorder=3,
-                    label="Euler, exact" if side == 1 else None)
-        ax.set(xlabel=r"$x\,/\,R(t)$", ylabel=label, xlim=(-1.3, 1.3), ylim=(-top if sign < 0 else 0, top))
-    axes[0, 1].legend(loc="upper center", ncol=2)
-    return figure
+    for ax, exact, odd, label, top in zip(others, solutions, (False, True, False), (
+            r"density $\rho\,/\,\rho_0$", r"velocity $u\,/\,\dot R$", r"temperature $\theta\,/\,\dot R^2$"),
+            (2.4, 0.75, 1.5)):
+        ax.plot(xi, exact, "k--", lw=1, zorder=3, label="Euler, exact")
+        ax.plot(-xi, -exact if odd else exact, "k--", lw=1, zorder=3)
+        ax.set(xlabel=r"$x\,/\,R(t)$", ylabel=label, xlim=(-1.3, 1.3), ylim=(-top if odd else 0, top))
+    others[0].legend(loc="upper center", ncol=2)
 
 
 def draw_front(ax, result, energy, rho):

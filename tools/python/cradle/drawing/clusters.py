@@ -2,7 +2,7 @@
 Their separation grows as t^(1/3), their speed falls as t^(-1/3) (section VI). A line follows a cluster, not a side."""
 import numpy as np
 
-from .style import BLUE, GREY, ORANGE, beside, plt, power, shades, stacked, subplots, thinned
+from .style import BLUE, GREY, ORANGE, beside, plt, power, shaded, thinned
 
 DECADES, BINS, FIRST = 4.3, 13, 3  # maxima in so many logarithmic bins over the last decades; the fit begins in bin 3
 ENOUGH = 20  # samples of a bin: of fewer the largest says nothing of the swing
@@ -52,11 +52,11 @@ def with_gaps(time, values, broken):
     return np.insert(time, at, time[at]), np.insert(values.astype(float), at, np.nan)
 
 
-def draw_clusters(result, units, axes):
+def draw_clusters(result, units, panels):
     force = result.table("force")
     tracks, broken = followed(result.means["heaviest"])
     time = result.means["time"] / units.t
-    figure, (position, velocity) = stacked(axes, 2, width=6.0, height=3.0, sharex=True)
+    position, velocity = panels.stacked(2, width=6.0, height=3.0, sharex=True)
     position.set_ylabel(units.position_label())
     velocity.set(ylabel=units.velocity_label(), xlabel=units.time_label())
     for ax, values in ((position, tracks["x"] / units.x), (velocity, tracks["v"] / units.v)):
@@ -81,7 +81,6 @@ def draw_clusters(result, units, axes):
     rescaled.set_ylim(-bound, bound)
     if force:
         draw_force(room_above(velocity, (0.10, 0.65, 0.22, 0.32), units.position_label(), r"$F_\Sigma$"), force, units)
-    return figure
 
 
 def largest(values, left_out):
@@ -133,11 +132,11 @@ def envelope(time, values, begin=0.0):
     return time, values, centre, top, late, fit
 
 
-def draw_scaling(result, units, axes):
+def draw_scaling(result, units, panels):
     heaviest, time = result.means["heaviest"], result.means["time"] / units.t
     x, v = heaviest["x"], heaviest["v"]
     begin = min(result.table("meetings").get("time", ()), default=0.0) / units.t  # before, each swings on its side
-    figure, axes = stacked(axes, 2 + bool(result.masses), height=2.3)
+    axes = panels.stacked(2 + bool(result.masses), height=2.3)
     rows = ((np.abs(x[:, 1] - x[:, 0]) / units.x, 1 / 3, units.label("separation", r"separation$\,/\,l$"), BLUE),
             (np.abs(v[:, 1] - v[:, 0]) / units.v, -1 / 3, units.label("relative speed", r"relative speed$\,/\,2u_0$"),
              ORANGE))
@@ -146,7 +145,6 @@ def draw_scaling(result, units, axes):
         ax.set(xlabel=units.time_label(), ylabel=label)
     if result.masses:
         draw_masses(axes[2], result.masses, units)
-    return figure
 
 
 def draw_envelope(ax, time, values, theory, colour, begin):
@@ -166,15 +164,13 @@ def draw_envelope(ax, time, values, theory, colour, begin):
 
 def draw_masses(ax, masses, units):
     """The number of clusters with at least a given mass: there are too few clusters for a histogram."""
-    groups = thinned(masses, 6)
-    for group, colour in zip(groups, shades(len(groups))):
+    for group, colour in shaded(thinned(masses, 6)):
         above = np.cumsum(group["clusters"][::-1].astype(float))[::-1]
         ax.step(group["mass"], above, where="pre", color=colour, label=rf"$t={power(group['time'] / units.t)}$")
     ax.set(xscale="log", yscale="log", xlabel=r"mass $M\,/\,m$", ylabel="clusters heavier than $M$")
     beside(ax)
 
 
-def draw_masses_alone(result, units, axes):
-    figure, ax = subplots(axes, figsize=(5.6, 2.9))
+def draw_masses_alone(result, units, panels):
+    ax = panels(figsize=(5.6, 2.9))
     draw_masses(ax, result.masses, units)
-    return figure

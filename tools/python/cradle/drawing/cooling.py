@@ -4,7 +4,7 @@ of variance s^2 and mean spacing a (m = 1)
 exact for t -> infinity in the sticky gas (Burgers equation with white noise); Haff's law where it is predicted."""
 import numpy as np
 
-from .style import BLUE, GREEN, GREY, ORANGE, RED, power, stacked, thinned
+from .style import BLUE, GREEN, GREY, ORANGE, RED, note, power, thinned
 
 ENERGY, CLUSTERS = 0.221376226650747359, 1.32825735990448415
 STRETCH = 80  # particles of the last snapshot that are shown of the velocities
@@ -36,14 +36,21 @@ def sticky_law(result, time):
         return ENERGY * speed ** 2 * (speed * time / spacing) ** (-2 / 3)
 
 
-def draw_cooling(result, theory, axes):
+def cooled(result):
+    """Which samples come after the first meetings, their times, and the energies per particle: its own and the sticky
+    gas's."""
+    particles, speed, spacing = ring_of(result)
+    later = result.means["time"] * speed / spacing > 0.03
+    time = result.means["time"][later]
+    return later, time, result.means["energy"][later] / particles, sticky_law(result, time)
+
+
+def draw_cooling(result, theory, panels):
     particles, speed, spacing = ring_of(result)
     series = result.means
-    later = series["time"] * speed / spacing > 0.03  # nothing has met before
-    time = series["time"][later]
-    energy, law = series["energy"][later] / particles, sticky_law(result, time)
+    later, time, energy, law = cooled(result)
     merging = result.law in ("sticky", "wet")
-    figure, axes = stacked(axes, 3 if merging else 2, height=2.2, sharex=True)
+    axes = panels.stacked(3 if merging else 2, height=2.2, sharex=True)
     asymptotic = law < 2 * energy[0]
     axes[0].loglog(time, energy, color=BLUE, lw=1.6, label="simulation")
     axes[0].plot(time[asymptotic], law[asymptotic], "k--", label=r"sticky gas, $0.2214\,s^2\tau^{-2/3}$")
@@ -70,13 +77,12 @@ def draw_cooling(result, theory, axes):
         axes[2].set_ylabel(r"clusters per particle")
         axes[2].legend(loc="lower left")
     axes[-1].set_xlabel(rf"time ($t$)   ($\tau=st/a$, $s={speed:.4g}$, $a={spacing:.4g}$)")
-    return figure
 
 
-def draw_field(result, axes):
+def draw_field(result, panels):
     """Velocity against position in a part of the ring: larger clusters are heavier, and velocities form a saw-tooth."""
     snapshots = thinned(result.snapshots, 4)
-    figure, axes = stacked(axes, len(snapshots), height=1.8, sharex=True)
+    axes = panels.stacked(len(snapshots), height=1.8, sharex=True)
     last = snapshots[-1]
     stretch = np.sort(last["x"] - last["x"].min())[min(len(last["x"]), STRETCH) - 1] or 1.0
     for ax, snapshot in zip(axes, snapshots):
@@ -87,6 +93,5 @@ def draw_field(result, axes):
                    rasterized=True)
         ax.axhline(0, color=GREY, lw=0.6, zorder=0)
         ax.set_ylabel("velocity $v$ ($l/t$)")
-        ax.set_title(f"$t={power(snapshot['time'])}$", loc="right", fontsize=8)
+        note(ax, f"$t={power(snapshot['time'])}$")
     axes[-1].set_xlabel("position $x$ ($l$), a stretch of the ring")
-    return figure

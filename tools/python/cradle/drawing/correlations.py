@@ -10,7 +10,7 @@ import math
 import numpy as np
 
 from .averages import draw_points
-from .style import BLUE, ORANGE, stacked
+from .style import BLUE, ORANGE, note
 
 PANELS = (("msd", r"mean-square displacement ($l^2$)"),
           ("vacf", r"$\langle v(0)\,v(t)\rangle$ ($l^2/t^2$)"))
@@ -63,10 +63,10 @@ def exact(result, lags):
     return (spacing ** 2 * np.array([squares(t) for t in times]), variance * np.array([products(t) for t in times]))
 
 
-def draw(result, axes):
+def draw(result, panels):
     table = result.correlations
     lag = np.asarray(table["lag"])
-    figure, axes = stacked(axes, len(PANELS), height=2.6, sharex=True)
+    axes = panels.stacked(len(PANELS), height=2.6, sharex=True)
     shown = lag > 0
     for ax, (name, label) in zip(axes, PANELS):
         draw_points(ax, lag, table, name, shown, color=BLUE)
@@ -77,8 +77,6 @@ def draw(result, axes):
         times = np.geomspace(lag[shown][0], lag[shown][-1], 60)
         for ax, curve in zip(axes, exact(result, times) or ()):
             ax.plot(times, curve, "--", color=ORANGE, lw=1, label="exact")
-            ax.legend(loc="best")
-    axes[0].set_title(f"tagged particles, $t={table['from']:.5g}$ to ${table['until']:.5g}$, bars: standard errors",
-                      loc="right", fontsize=8)
+            ax.legend()
+    note(axes[0], f"tagged particles, $t={table['from']:.5g}$ to ${table['until']:.5g}$, bars: standard errors")
     axes[-1].set_xlabel("time between the two states ($t$)")
-    return figure

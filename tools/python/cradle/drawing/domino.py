@@ -4,7 +4,7 @@ from fractions import Fraction
 
 import numpy as np
 
-from .style import BLUE, GREY, ORANGE, stacked
+from .style import BLUE, GREY, ORANGE, note
 
 
 def pictures(result, _theory, _units):
@@ -35,9 +35,9 @@ def first_hits(result):
     return right[first], np.array(late, float)
 
 
-def draw(result, axes):
+def draw(result, panels):
     particle, late = first_hits(result)
-    figure, (top, below) = stacked(axes, 2, height=2.6)
+    top, below = panels.stacked(2, height=2.6)
     events = result.events
     some = events["right"] <= 24
     top.plot(events["time"][some], events["right"][some], "o", ms=3, color=GREY, label="collisions")
@@ -51,9 +51,8 @@ def draw(result, axes):
     below.loglog(particle[size > 0], size[size > 0], "o", ms=2.5, color=BLUE, label=precision)
     below.set(xlabel="heavy particle $n$", ylabel=r"$|t_n-(n-c_k)|\,u/a$")
     exact = int((size == 0).sum())
-    below.set_title(f"k = {order(result)}; {exact} of {len(size)} exact to the digits kept", loc="right", fontsize=8)
+    note(below, f"k = {order(result)}; {exact} of {len(size)} exact to the digits kept")
     below.legend(loc="upper left")
-    return figure
 
 
 def delay_of(result):

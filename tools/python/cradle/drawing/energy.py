@@ -2,7 +2,7 @@
 import numpy as np
 
 from .cooling import cools
-from .style import BLUE, GREEN, GREY, ORANGE, lettered, subplots
+from .style import BLUE, GREEN, GREY, ORANGE
 
 
 def pictures(result, theory, units):
@@ -11,11 +11,11 @@ def pictures(result, theory, units):
         yield "energy", draw_energy, result, theory, units
 
 
-def draw_energy(result, theory, units, axes):
+def draw_energy(result, theory, units, panels):
     """Energy, with equation (7) dotted and the sticky gas dashed; below, the number of collisions."""
     series = result.means
     time = series["time"] / units.t
-    figure, (top, below) = subplots(axes, 2, 1, sharex=True, figsize=(5.6, 5.4), height_ratios=(3, 2))
+    top, below = panels(2, sharex=True, figsize=(5.6, 5.4), height_ratios=(3, 2), letters=True)
     energy = series["energy"] / units.energy
     top.plot(time, energy, color=BLUE, lw=1.6, label="simulation")
     cited = theory.equation("energy").replace("E_loss", r"$E_\mathrm{loss}$")
@@ -36,11 +36,8 @@ def draw_energy(result, theory, units, axes):
     if top.get_ylim()[0] > 0:
         top.set_ylim(top=most + 0.1 * (most - least or most))
     top.set_ylabel(units.label(r"kinetic energy $E$ ($m\,l^2/t^2$)", units.energy_label()))
-    top.legend(loc="best")
     draw_collisions(below, series, time)
     below.set_xlabel(units.time_label())
-    lettered((top, below))
-    return figure
 
 
 def draw_collisions(ax, series, time):
@@ -54,5 +51,3 @@ def draw_collisions(ax, series, time):
     if counts is not None and counts.max() > 1000:
         ax.set_yscale("log")
     ax.set_ylabel("number")
-    if ax.get_lines():
-        ax.legend(loc="best")

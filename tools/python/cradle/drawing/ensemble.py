@@ -2,9 +2,10 @@
 extremes (light band); profiles; and the times of inelastic collapse if replicas stopped there."""
 import numpy as np
 
-from .cooling import cools, ring_of, sticky_law
+from ..result import fronts
+from .cooling import cooled, cools, ring_of
 from .shock import draw_slope
-from .style import BLUE, GREY, ORANGE, beside, shades, stacked, thinned
+from .style import BLUE, GREY, ORANGE, beside, note, shaded, thinned
 
 SERIES = (("energy", "energy"), ("collisions", "collisions"), ("merges", "merges"), ("front_right", "right front"),
           ("cloud_width", "width of the cloud"))
@@ -29,20 +30,20 @@ def band(ax, x, quantity, unit, colour, **line):
     ax.plot(x, mean, color=colour, **line)
 
 
-def draw_series(result, theory, units, axes):
+def draw_series(result, theory, units, panels):
     time = result.series["time"] / units.t
     scale = {"energy": units.energy, "front_right": units.x, "cloud_width": units.x}
     shown = [(name, label) for name, label in SERIES if name in result.series
-             and np.ndim(result.series[name]["mean"]) == 1 and (result.series[name]["max"] > 0).any()]
-    figure, axes = stacked(axes, len(shown), height=2.0, sharex=True)
+             and (name != "front_right" or name in fronts(result)) and (result.series[name]["max"] > 0).any()]
+    axes = panels.stacked(len(shown), height=2.0, sharex=True)
     replicas = len(result.replicas.get("index", ()))
     left = min((int(counts[-1]) for name, _ in shown if (counts := result.series[name].get("count")) is not None),
                default=replicas)
-    axes[0].set_title((f"{replicas} replicas; " if replicas else "") + (f"{left} at the end; " if left < replicas else "")
-                      + "bands: standard error, extremes", loc="right", fontsize=8)
+    note(axes[0], (f"{replicas} replicas; " if replicas else "") + (f"{left} at the end; " if left < replicas else "")
+         + "bands: standard error, extremes")
     axes[-1].set(xlabel=units.time_label(), xlim=(time[0], time[-1]))
     for ax, (name, label) in zip(axes, shown):
-        band(ax, time, result.series[name], scale.get(name, 1), BLUE, lw=1.2, label="mean")
+        band(ax, time, result.series[name], scale.get(name, 1), BLUE, lw=1.2)
         ax.set_ylabel(units.energy_label() if name == "energy" else
                       label + (units.label("", r"$\,/\,l$") if scale.get(name) == units.x else ""))
     on_ring = result.word("initial", "type") == "ring"
@@ -54,29 +55,28 @@ def draw_series(result, theory, units, axes):
         if inside.any():
             ax.plot(t[inside] / units.t, value[inside] / scale[name], "k--", lw=1,
                     label=label or theory.equation(quantity))
-            ax.legend(loc="best")
     if cools(result):
         show_cooling(axes, result, time)
-    return figure
+    for lines in (ax.get_lines() for ax in axes):
+        if len(lines) > 1:  # a prediction beside the mean
+            lines[0].set_label("mean")
 
 
 def show_cooling(axes, result, time):
     """A logarithmic time axis from the first collisions, with the law of the sticky gas."""
-    particles, speed, spacing = ring_of(result)
-    later = time * speed / spacing > 0.03
-    law = particles * sticky_law(result, time[later])
+    later, _, _, law = cooled(result)
+    law = law * ring_of(result)[0]
     shown = law < 2 * result.series["energy"]["max"][0]
     axes[0].plot(time[later][shown], law[shown], "k--", lw=1, label="sticky gas")
     axes[0].set_yscale("log")
-    axes[0].legend(loc="best")
     axes[-1].set(xscale="log", xlim=(time[later][0], time[-1]))
 
 
-def draw_profiles(result, theory, units, axes):
+def draw_profiles(result, theory, units, panels):
     profiles = thinned(result.profiles, 6)
-    figure, (velocity, density) = stacked(axes, 2, width=6.4, height=2.7, sharex=True)
+    velocity, density = panels.stacked(2, width=6.4, height=2.7, sharex=True)
     name = "mass_density" if result.law in ("wet", "sticky") and "mass_density" in profiles[0] else "density"
-    for profile, colour in zip(profiles, shades(len(profiles))):
+    for profile, colour in shaded(profiles):
         x = profile["x"] / units.x
         band(velocity, x, profile["velocity"], units.v, colour, lw=1.1, label=rf"$t={profile['time'] / units.t:.5g}$")
         band(density, x, profile[name], 1 / units.x, colour, lw=1.1)
@@ -85,18 +85,15 @@ def draw_profiles(result, theory, units, axes):
     density.set(ylabel=("mass " if name == "mass_density" else "") + units.density_label(), ylim=(0, None),
                 xlabel=units.position_label())
     beside(velocity)
-    return figure
 
 
-def draw_collapse(result, units, axes):
+def draw_collapse(result, units, panels):
     times = result.replicas["collapse_time"] / units.t
     known = times[np.isfinite(times)]
-    figure, (ax,) = stacked(axes, 1, height=3.0)
+    (ax,) = panels.stacked(1, height=3.0)
     bins = np.histogram_bin_edges(known, min(50, max(5, int(np.sqrt(len(known)) * 1.5))))
     ax.hist(known, bins, color=BLUE, edgecolor="white", lw=0.4)
     ax.axvline(np.median(known), color=ORANGE, lw=1.2, label=f"median {np.median(known):.5g}")
     ax.axvline(known.mean(), color=GREY, lw=1.2, ls="--", label=f"mean {known.mean():.5g}")
     ax.set(xlabel=units.label(r"time of collapse $t_c$", r"time of collapse $t_c\,/\,(l/2u_0)$"), ylabel="replicas")
-    ax.set_title(f"{len(known)} of {len(times)} replicas", loc="right", fontsize=8)
-    ax.legend(loc="best")
-    return figure
+    note(ax, f"{len(known)} of {len(times)} replicas")

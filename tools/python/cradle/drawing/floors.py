@@ -3,7 +3,7 @@ doubling; the height of a column of beads against X = N (1 - r), beside that of 
 core/laws/README.md."""
 import numpy as np
 
-from .style import BLUE, GREY, ORANGE, shades, subplots
+from .style import BLUE, GREY, ORANGE, shaded
 
 LAST = 64  # samples of a ball that are shown
 
@@ -36,8 +36,8 @@ def doubling(restitution):
     return np.hypot(2 * (1 + r * r) / (1 + r) ** 2, np.pi * (1 - r) / (1 + r))
 
 
-def draw_ball(points, axes):
-    figure, ax = subplots(axes, figsize=(7.4, 3.6))
+def draw_ball(points, panels):
+    ax = panels(figsize=(7.4, 3.6))
     for point in points:
         floor, g = floor_of(point), -point.setting("gravity", "acceleration")
         strength = floor["amplitude"] * floor["frequency"] ** 2 / g
@@ -48,7 +48,6 @@ def draw_ball(points, axes):
     ax.axvline(doubling(r), color=ORANGE, lw=1, ls="--", label=f"periods double, {doubling(r):.4f}")
     ax.set(xlabel=r"$A\omega^2/g$", ylabel=r"height once a period $x\,\omega^2/g$")
     ax.legend(loc="upper left")
-    return figure
 
 
 def column_of(point):
@@ -61,12 +60,12 @@ def column_of(point):
             blocks.mean(), blocks.std(ddof=1) / np.sqrt(len(blocks)))
 
 
-def draw_column(points, axes):
-    figure, (left, right) = subplots(axes, 1, 2, figsize=(7.4, 3.4))
+def draw_column(points, panels):
+    left, right = panels(1, 2, figsize=(7.4, 3.4))
     g = -points[0].setting("gravity", "acceleration")
     found = np.array([column_of(point) for point in points])
     speeds = np.unique(np.round(found[:, 1], 9))
-    for speed, colour in zip(speeds, shades(len(speeds))):
+    for speed, colour in shaded(speeds):
         x, v, height, error = found[np.isclose(found[:, 1], speed)].T
         left.errorbar(x, height, yerr=error, fmt="o", ms=3.5, capsize=2, color=colour, label=rf"$V={speed:.3g}$")
         fine = np.geomspace(x.min(), x.max(), 50)
@@ -77,4 +76,3 @@ def draw_column(points, axes):
     left.legend(loc="lower left")
     right.axhline(1, color="k", ls="--", lw=1)
     right.set(xscale="log", xlabel="$X=N(1-r)$", ylabel=r"height / ($\pi V^2/gX^2$)", ylim=(0, None))
-    return figure

@@ -2,7 +2,7 @@
 elastic gas on a ring those of equilibrium, w/(2 T) exp(-w^2/(4 T)) for particles of mass 1."""
 import numpy as np
 
-from .style import BLUE, ORANGE, stacked
+from .style import BLUE, ORANGE, note
 
 LABELS = {"free_flight": "time between two collisions of a particle ($t$)",
           "pair_flight": "time between two collisions of a pair ($t$)",
@@ -34,8 +34,8 @@ def variance(result):
     return result.setting("initial", "variance", 1.0) if elastic and on_ring else None
 
 
-def draw(result, names, axes):
-    figure, axes = stacked(axes, len(names), height=2.2)
+def draw(result, names, panels):
+    axes = panels.stacked(len(names), height=2.2)
     for ax, name in zip(axes, names):
         table = result.histograms[name]
         drawn, count, error = counted(table)
@@ -46,7 +46,5 @@ def draw(result, names, axes):
         ax.errorbar(x, count[shown] * scale, yerr=error[shown] * scale, fmt="o", ms=2.5, lw=0.8, color=BLUE)
         if name == "closing_speed" and (T := variance(result)) is not None:
             ax.plot(x, x / (2 * T) * np.exp(-x ** 2 / (4 * T)), "--", color=ORANGE, lw=1, label="equilibrium")
-            ax.legend(loc="best")
         ax.set(xscale="log", yscale="log", xlabel=LABELS[name], ylabel="density")
-    axes[0].set_title(f"counted at $t={table['from']:.5g}$ to ${table['until']:.5g}$", loc="right", fontsize=8)
-    return figure
+    note(axes[0], f"counted at $t={table['from']:.5g}$ to ${table['until']:.5g}$")

@@ -4,7 +4,7 @@ and Young's estimate and with the exact number of particles in free space, or at
 import numpy as np
 
 from .scenarios import wilson
-from .style import shades, subplots
+from .style import shaded
 
 
 def pictures(result, _theory, _units):
@@ -53,9 +53,9 @@ def half(points):
     return at[k - 1] + (at[k] - at[k - 1]) * (0.5 - share[k - 1]) / (share[k] - share[k - 1])
 
 
-def draw(curves, walled, axes):
-    figure, (left, right) = subplots(axes, 1, 2, figsize=(7.4, 3.4))
-    for (eps, points), colour in zip(curves.items(), shades(len(curves))):
+def draw(curves, walled, panels):
+    left, right = panels(1, 2, figsize=(7.4, 3.4))
+    for (eps, points), colour in shaded(curves.items()):
         number = np.array([n for n, _, _ in points])
         share, low, high = np.array([wilson(hits, count) for _, hits, count in points]).T
         left.errorbar(number * (1 - eps), share, yerr=[share - low, high - share], fmt="o-", ms=3, lw=0.9, capsize=2,
@@ -72,4 +72,3 @@ def draw(curves, walled, axes):
                label="at a wall, exact" if walled else "free space, exact")
     right.set(xlabel=r"$1-r$", ylabel="particles $N_c$")
     right.legend(loc="lower left")
-    return figure

@@ -2,7 +2,7 @@
 collapse against the time that is left to it, in which everything is a power."""
 import numpy as np
 
-from .style import BLUE, ORANGE, RED, lettered, shades, subplots
+from .style import BLUE, ORANGE, RED, shaded
 
 FEW_PARTICLES = 20       # up to here every particle has a path of its own
 
@@ -16,18 +16,17 @@ def pictures(result, theory, units):
         yield "particles", draw_particles, result, units
 
 
-def draw_particles(result, units, axes):
+def draw_particles(result, units, panels):
     """Paths, energy and collisions (at a collapse collisions alone), and how intervals (from events) or gaps
     shrink."""
     shrinking = {"interval", "closing_speed"} <= result.events.keys()
     gaps = not shrinking and len(result.snapshots) > 1
-    rows = 2 + (shrinking or gaps)
-    figure, axes = subplots(axes, rows, 1, figsize=(5.6, 2.4 * rows + 0.3))
+    axes = panels.stacked(2 + (shrinking or gaps))
     paths = {}
     for snapshot in result.snapshots:
         for particle, x in zip(snapshot["index"], snapshot["x"]):
             paths.setdefault(int(particle), []).append((snapshot["time"], x))
-    for (particle, path), colour in zip(sorted(paths.items()), shades(len(paths))):
+    for (particle, path), colour in shaded(sorted(paths.items())):
         axes[0].plot(*(np.array(path) / (units.t, units.x)).T, "o-", ms=3, color=colour, label=f"particle {particle}")
     left = time_to_collapse(result) if shrinking else None
     series = result.means
@@ -37,7 +36,7 @@ def draw_particles(result, units, axes):
                          label="outermost" if line == ":" else None)
     axes[0].set(xlabel=units.time_label(), ylabel=units.position_label())
     if axes[0].get_lines() and len(paths) <= 8:
-        axes[0].legend(loc="best", ncol=2)
+        axes[0].legend(ncol=2)
     if left is not None:
         draw_before_collapse(axes[1], left, units)
     elif series:
@@ -60,16 +59,12 @@ def draw_particles(result, units, axes):
         axes[2].set(xlabel="collision", ylabel="interval, closing speed")
         if left is not None:
             towards_collapse(axes[2], units)
-        axes[2].legend(loc="best")
     elif gaps:
         for pair in range(min(len(s["gap"]) for s in result.snapshots)):
             points = [(s["time"], s["gap"][pair]) for s in result.snapshots if s["gap"][pair] > 0]
             points = np.array(points).reshape(-1, 2)
             axes[2].semilogy(points[:, 0] / units.t, points[:, 1] / units.x, "o-", ms=3, label=f"gap {pair}")
         axes[2].set(xlabel=units.time_label(), ylabel=units.label("gap", r"gap$\,/\,l$"))
-        axes[2].legend(loc="best")
-    lettered(axes)
-    return figure
 
 
 def time_to_collapse(result):

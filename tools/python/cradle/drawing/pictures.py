@@ -1,6 +1,6 @@
 """Which pictures a result has, and writing them. Every kind is a module with pictures(result, theory, units), which
-yields a name, the function that draws the picture, and its arguments before `axes`; nothing if the result does not have
-the data."""
+yields a name, the function that draws the picture, and its arguments before `panels`; nothing if the result does not
+have the data."""
 import contextlib
 import os
 
@@ -12,7 +12,7 @@ from . import (averages, beyond, blast, clusters, cooling, correlations, domino,
                onset, particles, places, proof, scenarios, shock, spacetime, splash, sticky, structure, sweep,
                threshold, walls, words, zone)
 from .finish import finish
-from .style import Units, style
+from .style import Panels, Units, style
 from .theory import Theory
 
 CLASSICS = (onset, floors, blast, domino, splash, walls)
@@ -44,8 +44,10 @@ def available(result, predictions):
 def drawing(path, name, draw, arguments, title):
     def drawn(axes=None, dark=False, titled=True):
         with style(dark), lacking(path, f" for the {name} picture"):
-            figure = draw(*arguments, axes)
-            return figure if axes is not None else finish(figure, title if titled else "")
+            panels = Panels(axes)
+            draw(*arguments, panels)
+            panels.add_legends()
+            return panels.figure if axes is not None else finish(panels.figure, title if titled else "")
     return drawn
 
 

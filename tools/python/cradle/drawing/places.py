@@ -2,7 +2,7 @@
 sweep those of all points, a panel for each time. The line is that of independent places, 1, of which identical elastic
 particles in equilibrium are an example."""
 from .averages import draw_points as draw_mean
-from .style import ORANGE, beside, distinct, shades, stacked, subplots, thinned
+from .style import ORANGE, beside, distinct, shaded, shades, thinned
 from .sweep import label_of
 
 PICTURES = (("structure_factor", "structure", "s", "k", "wave number $k$ ($1/l$)", "structure factor $S(k)$",
@@ -23,29 +23,26 @@ def mean_of(quantity):
     return quantity["mean"] if "mean" in quantity else quantity
 
 
-def draw(result, group, name, along, xlabel, ylabel, scales, axes):
-    figure, ax = subplots(axes, figsize=(5.6, 3.2))
-    at = thinned(getattr(result, group))
-    for table, colour in zip(at, shades(len(at))):
+def draw(result, group, name, along, xlabel, ylabel, scales, panels):
+    ax = panels(figsize=(5.6, 3.2))
+    for table, colour in shaded(thinned(getattr(result, group))):
         ax.plot(table[along], mean_of(table[name]), color=colour, lw=1, label=f"$t={table['time']:.5g}$")
     if mean := getattr(result, group + "_average"):
         draw_mean(ax, mean[along], mean, name, color="k", label=f"${mean['from']:.5g}$ to ${mean['until']:.5g}$")
     ax.axhline(1, color=ORANGE, lw=1, ls="--", label="independent")
     ax.set(**scales, xlabel=xlabel, ylabel=ylabel)
     beside(ax)
-    return figure
 
 
-def draw_points(result, group, name, along, xlabel, ylabel, scales, axes):
+def draw_points(result, group, name, along, xlabel, ylabel, scales, panels):
     points = [p for p in result.points if len(getattr(p, group))]
     times = thinned(getattr(points[0], group).times)
-    figure, panels = stacked(axes, len(times), height=2.4, sharex=True)
-    for ax, time in zip(panels, times):
+    axes = panels.stacked(len(times), height=2.4, sharex=True)
+    for ax, time in zip(axes, times):
         for point, colour, label in zip(points, shades(len(points)), distinct(map(label_of, points), points)):
             table = getattr(point, group).at(time, "nearest")
             ax.plot(table[along], mean_of(table[name]), color=colour, lw=1, label=label)
         ax.axhline(1, color=ORANGE, lw=1, ls="--")
         ax.set(**scales, ylabel=ylabel, title=f"$t={time:.5g}$")
-    panels[0].legend(loc="best", fontsize=7)
-    panels[-1].set_xlabel(xlabel)
-    return figure
+    axes[0].legend(fontsize=7)
+    axes[-1].set_xlabel(xlabel)

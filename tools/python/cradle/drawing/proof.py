@@ -2,7 +2,7 @@
 proof in time: the smallest gap, and the radii of positions and gaps."""
 import numpy as np
 
-from .style import BLUE, GREEN, ORANGE, plt, subplots
+from .style import BLUE, GREEN, ORANGE, plt
 
 
 def pictures(result, _theory, _units):
@@ -15,10 +15,10 @@ def certificates(result, units):
         yield "certificate", draw_certificate, result, units
 
 
-def draw_trust(result, axes):
+def draw_trust(result, panels):
     """Digits of energy and front, and the time until which the sequence of collisions is right."""
-    figure, panels = subplots(axes, 2, 1, sharex=True, figsize=(6.4, 6.4))
-    for ax, name in zip(panels, ("energy", "front")):
+    axes = panels(2, 1, sharex=True, figsize=(6.4, 6.4))
+    for ax, name in zip(axes, ("energy", "front")):
         for run, colour in zip(result.trust[:-1], plt.rcParams["axes.prop_cycle"].by_key()["color"] * 4):
             line = "--" if run["coordinates"] == "absolute" else "-"
             label = f"{run['precision']}, {run['coordinates']}"
@@ -26,18 +26,17 @@ def draw_trust(result, axes):
             if not run["right_to_end"]:
                 ax.axvline(run["collisions_right_until"], color=colour, linestyle=line, linewidth=0.8)
         ax.set(ylabel=f"digits of the {name}", ylim=(0, None))
-    panels[0].legend(fontsize="small", title=f"against {result.trust[-1]['precision']}", ncols=2)
-    panels[1].set_xlabel("time ($t$)   (vertical lines: until when the sequence of collisions is right)")
-    return figure
+    axes[0].legend(fontsize="small", title=f"against {result.trust[-1]['precision']}", ncols=2)
+    axes[1].set_xlabel("time ($t$)   (vertical lines: until when the sequence of collisions is right)")
 
 
-def draw_certificate(result, units, axes):
+def draw_certificate(result, units, panels):
     """The smallest gap, the largest radius of a position, and the ratio of a gap's radius to the gap; it must stay
     below 1."""
     proof = result.certificate
     collapsing = len(result.collapse) > 0  # there time says nothing: all collisions are at its end
     time = proof["collisions"].astype(float) if collapsing else proof["time"] / units.t
-    figure, (top, below) = subplots(axes, 2, 1, sharex=True, figsize=(5.6, 5.4), height_ratios=(3, 2))
+    top, below = panels(2, 1, sharex=True, figsize=(5.6, 5.4), height_ratios=(3, 2))
     for name, colour, label in (("gap", BLUE, "smallest gap"), ("widest", ORANGE, "largest radius of a place"),
                                 ("widest_of_gap", GREEN, "largest radius of a gap, against the gap")):
         known = np.isfinite(proof[name])
@@ -47,10 +46,9 @@ def draw_certificate(result, units, axes):
     about = proof.attributes
     top.set_title(f"{about['verdict']}: {int(about['collisions']):,} collisions, run in {about['precision']}, "
                   f"proved with {int(about['digits'])} digits", fontsize="medium")
-    top.legend(loc="best", fontsize="small")
+    top.legend(fontsize="small")
     below.plot(time, proof["time"] / units.t if collapsing else proof["collisions"], color=BLUE)
     if not collapsing and proof["collisions"].max() > 1000:
         below.set_yscale("symlog")
     names = ["collisions proved", units.time_label()]
     below.set(xlabel=names[not collapsing], ylabel=names[collapsing])
-    return figure

@@ -2,7 +2,7 @@
 (paper, section VI), and when an inelastic shock collapses (against N_c/(2 u0), section III)."""
 import numpy as np
 
-from .style import BLUE, GREY, RED, SKY, shades, stacked, subplots
+from .style import BLUE, GREY, RED, SKY, shaded, shades
 
 REGIMES = {1: "apart", 2: "through each other", 3: "stuck last", 0: "one cluster only"}  # core/observe/scenario.hpp
 ENOUGH = 10  # replicas of a point of which shares are drawn
@@ -55,8 +55,8 @@ def mean(values):
     return values.mean(), values.mean() - error, values.mean() + error
 
 
-def draw_scenarios(result, axes):
-    figure, axes = stacked(axes, 4, height=2.1, sharex=True)
+def draw_scenarios(result, panels):
+    axes = panels.stacked(4, height=2.1, sharex=True)
     groups = curves(result)
     for (size, points), colour, mark in zip(groups.items(), shades(len(groups)), "osD^v<>"):
         for ax, name, estimate in ((axes[0], "first_passed", lambda known: wilson(known.sum(), len(known))),
@@ -71,15 +71,13 @@ def draw_scenarios(result, axes):
     axes[2].set(ylabel="times stuck", ylim=(0, None))
     axes[3].axhline(1 / 3, color=GREY, lw=0.8, zorder=0)
     axes[3].set(ylabel="exponent of\nseparation", xscale="log", xlabel=r"$E_\mathrm{loss}$ ($m\,l^2/t^2$)")
-    axes[0].legend(loc="best")
     axes[0].set_title("95 % confidence", loc="right", fontsize=7)
-    return figure
 
 
-def draw_regimes(result, axes):
+def draw_regimes(result, panels):
     """The outcomes of the replicas as shares, for each loss and size of perturbation."""
     groups = curves(result)
-    figure, axes = stacked(axes, len(groups), height=1.9, sharex=True)
+    axes = panels.stacked(len(groups), height=1.9, sharex=True)
     for ax, (size, points) in zip(axes, groups.items()):
         below = np.zeros(len(points))
         places = np.arange(len(points))
@@ -92,18 +90,17 @@ def draw_regimes(result, axes):
         ax.set_xticks(places, losses, fontsize=7, rotation=90 if len(points) > 13 else 0)
     axes[-1].set_xlabel(r"$E_\mathrm{loss}$ ($m\,l^2/t^2$)")
     axes[0].legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncol=4)
-    return figure
 
 
 def known_times(point):
     return finite(point.replicas.get("collapse_time", ()))
 
 
-def draw_collapse(result, axes):
+def draw_collapse(result, panels):
     """Distributions of t_c over replicas, in units of the time when N_c particles are engaged."""
     points = [point for point in result.points if known_times(point).size]
-    figure, ax = subplots(axes, figsize=(5.2, 3.6))
-    for point, colour in zip(points, shades(len(points))):
+    ax = panels(figsize=(5.2, 3.6))
+    for point, colour in shaded(points):
         restitution, speed = point.setting("law", "restitution"), point.setting("initial", "speed", 0.5)
         spacing = point.setting("initial", "spacing", 1.0)
         engaged = 2 / (1 - 4 / np.pi * np.arctan(np.sqrt(restitution))) * spacing / (2 * speed)
@@ -114,4 +111,3 @@ def draw_collapse(result, axes):
     ax.axvline(1, color=GREY, lw=0.8, zorder=0)
     ax.set(xlabel=r"collapse time $t_c\,/\,(N_c/2u_0)$", ylabel="probability density")
     ax.legend(loc="upper left", bbox_to_anchor=(0.06, 1.0))
-    return figure

@@ -5,7 +5,7 @@ If particles merge, the density of mass is drawn, not that of particles.
 import numpy as np
 
 from .structure import core_of
-from .style import GREY, beside, lettered, shades, subplots, thinned
+from .style import GREY, beside, times_of, thinned
 
 BIN_PARTICLES = 25       # bins of mean velocity are merged to hold so many: the two rows alternate, and fewer alias
 
@@ -50,19 +50,15 @@ def merged(profile):
     return moment[full] / total[full], np.add.reduceat(momentum, starts)[full] / total[full]
 
 
-def draw_shock(result, theory, units, axes):
+def draw_shock(result, theory, units, panels):
     """Velocities of single particles, averaged velocities, density."""
     most = 8 if result.law == "wet" else 7  # a wet shock goes through one stage more
     snapshots = thinned(result.snapshots, most)
     profiles = profiles_of(result) or [averaged(s) for s in snapshots if len(s["x"]) > 2 and np.ptp(s["x"]) > 0]
     common = [p for p in profiles if p["time"] in {s["time"] for s in snapshots}]
     profiles = thinned(common if len(common) > 1 else profiles, most)
-    times = sorted({group["time"] for group in snapshots + profiles})
-    colour = dict(zip(times, shades(len(times))))
-    name = {time: rf"$t={time / units.t:.5g}$" for time in times}
-    panels = bool(snapshots) + 2 * bool(profiles)
-    figure, axes = subplots(axes, panels, 1, sharex=True, figsize=(6.4, 2.5 * panels + 0.5))
-    axes = lettered(np.atleast_1d(axes))
+    colour, name = times_of(snapshots + profiles, units)
+    axes = panels.stacked(bool(snapshots) + 2 * bool(profiles), width=6.4, height=2.5, margin=0.5, sharex=True)
     axes[-1].set_xlabel(units.position_label())
     heavy = result.law == "wet" and all("mass_density" in p for p in profiles)
     density = "mass_density" if heavy else "density"
@@ -89,7 +85,6 @@ def draw_shock(result, theory, units, axes):
             axes[1].set(yscale="log", ylim=(0.5 * filled.min(), None))
         else:
             axes[1].set_ylim(bottom=0)
-    return figure
 
 
 def draw_velocities(ax, snapshots, theory, units, colour, name):

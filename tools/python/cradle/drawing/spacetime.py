@@ -3,7 +3,7 @@ particles, with the collisions marked; and Newton's cradle: the paths of the sin
 import numpy as np
 
 from .particles import few
-from .style import BLUE, GREY, ORANGE, RED, lettered, shades, subplots
+from .style import BLUE, GREY, ORANGE, RED, shades
 
 MOST_SINGLE = 40  # of the cradle: more circles could not be distinguished
 
@@ -41,19 +41,16 @@ def legs_of(result):
     return legs
 
 
-def draw_spacetime(result, units, axes):
+def draw_spacetime(result, units, panels):
     masses = np.concatenate([s["m"] for s in result.snapshots])
     whole = np.allclose(masses, masses.round()) and result.snapshots[0]["m"].sum() <= MOST_SINGLE
-    panels = 2 + bool(whole)
-    figure, axes = subplots(axes, panels, 1, figsize=(5.6, 2.4 * panels),
-                            height_ratios=(3, 2, 1.2) if whole else (3, 1.2))
-    lettered(axes)
+    axes = panels(2 + whole, figsize=(5.6, 2.4 * (2 + whole)), height_ratios=(3, 2, 1.2) if whole else (3, 1.2),
+                  letters=True)
     draw_paths(axes[0], result, units, masses.max())
     if whole:
         draw_cradle(axes[1], result.snapshots, units)
         axes[1].set_xlim(axes[0].get_xlim())
     draw_energy_steps(axes[-1], result, units)
-    return figure
 
 
 def draw_paths(ax, result, units, heaviest):

@@ -2,7 +2,7 @@
 with exponents fitted for every point of a sweep over seeds, and those of Euler's equations (core/theory/splash.hpp)."""
 import numpy as np
 
-from .style import BLUE, ORANGE, subplots
+from .style import BLUE, ORANGE
 
 FRONT, ENERGY = 0.627952, -0.116144
 LAST = 0.1  # exponents are fitted over the last decade of time
@@ -33,8 +33,8 @@ def fit(time, value):
     return np.polyfit(np.log(time[late]), np.log(value[late]), 1)[0]
 
 
-def draw(points, axes):
-    figure, axes = subplots(axes, 2, 2, figsize=(7.2, 5.2), sharex="col", width_ratios=(1.6, 1))
+def draw(points, panels):
+    axes = panels(2, 2, figsize=(7.2, 5.2), sharex="col", width_ratios=(1.6, 1))
     fronts = [(p.means["time"], p.means["front_right"]) for p in points]
     inside = [energies(p) for p in points]
     for row, (curves, known, label, colour) in enumerate(((fronts, FRONT, "front $R$ ($l$)", BLUE),
@@ -52,11 +52,10 @@ def draw(points, axes):
         error = slopes.std(ddof=1) / np.sqrt(len(slopes)) if len(slopes) > 1 else np.nan
         right.plot(np.arange(len(slopes)), slopes, "o", ms=4, color=colour)
         right.axhline(known, color="k", ls="--", lw=1, label="Euler's equations")
-        right.legend(loc="best")
+        right.legend()
         if np.isfinite(error):
             right.axhspan(mean - 2 * error, mean + 2 * error, color=colour, alpha=0.2, lw=0)
         right.set_title(f"{mean:.5f} ± {error:.5f}" if np.isfinite(error) else f"{mean:.5f}", fontsize=8)
         right.set_ylabel("exponent, last decade")
     axes[1, 0].set_xlabel("time ($t$)")
     axes[1, 1].set_xlabel("ensemble")
-    return figure

@@ -3,7 +3,7 @@ that of the rows and a delta peak, which begins at m_0 and grows at sqrt(rho_l r
 equal rows."""
 import numpy as np
 
-from .style import BLUE, GREY, ORANGE, shades, stacked, thinned
+from .style import BLUE, GREY, ORANGE, note, times_of, thinned
 
 
 def pictures(result, _theory, units):
@@ -29,18 +29,16 @@ def peak(snapshot):
     return snapshot["x"][k], snapshot["v"][k], snapshot["m"][k]
 
 
-def draw_sticky(result, units, axes):
+def draw_sticky(result, units, panels):
     (left, u_left), (right, u_right), (core, _) = rows_of(result)
     snapshots, profiles = thinned(result.snapshots, 5), thinned(result.mean_profiles, 5)
-    times = sorted({group["time"] for group in snapshots + profiles})
-    colour = dict(zip(times, shades(len(times))))
-    name = {time: rf"$t={time / units.t:.5g}$" for time in times}
-    figure, (velocity, density, mass) = stacked(axes, 3, height=2.3)
+    colour, name = times_of(snapshots + profiles, units)
+    velocity, density, mass = panels.stacked(3, height=2.3)
     roots = np.sqrt([left, right])
     front = (roots[0] * u_left + roots[1] * u_right) / roots.sum()  # velocity of the peak, 0 for equal rows
     growth = roots[0] * roots[1] * (u_left - u_right)
     span = max([np.abs(p["x"][p["density"] > 0]).max() for p in profiles if (p["density"] > 0).any()], default=1.0)
-    last = times[-1]
+    last = max(name)
 
     step = np.array([-span, front * last, front * last, span]) / units.x
     velocity.plot(step, np.array([u_left, u_left, u_right, u_right]) / units.v, color=GREY, lw=7, alpha=0.5, zorder=0,
@@ -85,12 +83,11 @@ def draw_sticky(result, units, axes):
     density.set(ylabel=units.label(r"density $\rho$", r"density $\rho\,/\,\rho_0$"), xlabel=units.position_label(),
                 ylim=(0, 1.15 * high), xlim=velocity.get_xlim())
     density.legend(loc="upper left")
-    density.set_title("arrows: delta peak, as high as it is heavy", loc="right", fontsize=8)
+    note(density, "arrows: delta peak, as high as it is heavy")
     if "cloud_mass" in result.means:
         equal = left == right and u_left == -u_right
         formula = r"$m_0+2t\rho_0u_0$" if equal else r"$m_0+\sqrt{\rho_l\rho_r}\,(u_l-u_r)\,t$"
         draw_mass(mass, result, units, formula if equal or not core else formula + " (asymptotic)", core, growth)
-    return figure
 
 
 def draw_mass(ax, result, units, formula, core, growth):

@@ -1,7 +1,7 @@
 """Fig. 3: four nested zooms into a core that positions cannot resolve, drawn from the gaps."""
 import numpy as np
 
-from .style import BLUE, RED, plt, subplots
+from .style import BLUE, RED, note, plt
 
 CORE_GAP = 1e-2       # of the spacing: a quarter of the gaps below this makes a core
 CORE_SHARE = 16       # the innermost zoom holds one particle in so many
@@ -45,7 +45,7 @@ def densest(gap, particles):
     return best + particles // 2, float(width[best])
 
 
-def draw_structure(snapshot, units, axes):
+def draw_structure(snapshot, units, panels):
     """Each panel is the rectangle in the one before; all distances are from one particle of the core."""
     gap, v = snapshot["gap"], snapshot["v"]
     inmost = max(CORE_PARTICLES, len(v) // CORE_SHARE)
@@ -65,8 +65,7 @@ def draw_structure(snapshot, units, axes):
         pad = 0.12 * (high - low) or 1e-3 * units.v
         boxes.append((half, low - pad, high + pad, inside))
     reference = rf"x_{{{int(snapshot['index'][particle])}}}"
-    own = axes is None
-    figure, axes = subplots(axes, 2, 2, figsize=(7.2, 5.6))
+    axes = panels(2, 2, figsize=(7.2, 5.6))
     dotted = False
     for k, ax in enumerate(axes.flat):
         half, low, high, inside = boxes[k]
@@ -83,12 +82,11 @@ def draw_structure(snapshot, units, axes):
             dotted = dotted or enlarged
         ax.set(xlabel=units.label(rf"$x-{reference}$", rf"$(x-{reference})\,/\,l$"), ylabel=units.velocity_label())
         ax.ticklabel_format(axis="both", style="sci", scilimits=(-2, 3), useMathText=True)
-        ax.set_title(rf"$\bf({'abcd'[k]})$  {int(inside.sum())} particles", fontsize=8, loc="right")
+        note(ax, rf"$\bf({'abcd'[k]})$  {int(inside.sum())} particles")
     length = units.label("", r"$\,l$")
     place = snapshot["x"][particle] / units.x
     title = (rf"$t={snapshot['time'] / units.t:.6g}$,  ${reference}={place:.6g}${length},  "
              f"smallest gap {gap.min() / units.x:.1e}{length};  rectangle: the next panel"
              + (" (dotted: drawn larger)" if dotted else ""))
-    if own:  # else it is the caller's figure
-        figure.suptitle(title, fontsize=9)
-    return figure
+    if panels.given is None:  # else it is the caller's figure
+        panels.figure.suptitle(title, fontsize=9)

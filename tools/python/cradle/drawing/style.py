@@ -93,29 +93,43 @@ class Units:
     energy_label = named("energy $E$ ($m\\,l^2/t^2$)", r"energy $E\,/\,m(2u_0)^2$")
 
 
-def subplots(axes, rows=1, columns=1, squeeze=True, **options):
-    """The figure and axes of a picture: new ones as plt.subplots makes them, or the given ones, one for each panel."""
-    if axes is None:
-        return plt.subplots(rows, columns, squeeze=squeeze, layout="constrained", **options)
-    given = np.array(axes, dtype=object).ravel()
-    if given.size != rows * columns:
-        raise Error(f"not as many axes as the picture has panels (found {given.size}): "
-                    f"give {rows * columns}, {rows} below each other and {columns} side by side", BAD_INPUT)
-    if squeeze and given.size == 1:
-        return given[0].figure, given[0]
-    return given[0].figure, given.reshape(-1) if squeeze and 1 in (rows, columns) else given.reshape(rows, columns)
+class Panels:
+    """Makes the panels of a picture, once: called like plt.subplots it returns new axes or, one for each panel, those
+    that were given."""
 
+    def __init__(self, given=None):
+        self.given, self.figure = given, None
 
-def stacked(axes, count, width=5.6, height=2.4, **options):
-    """A column of panels with their letters."""
-    figure, axes = subplots(axes, count, 1, figsize=(width, height * count + 0.3), **options)
-    return figure, lettered(np.atleast_1d(axes))
+    def __call__(self, rows=1, columns=1, squeeze=True, letters=False, **options):
+        if self.given is None:
+            self.figure, axes = plt.subplots(rows, columns, squeeze=False, layout="constrained", **options)
+        else:
+            axes = np.array(self.given, dtype=object).ravel()
+            if axes.size != rows * columns:
+                raise Error(f"not as many axes as the picture has panels (found {axes.size}): "
+                            f"give {rows * columns}, {rows} below each other and {columns} side by side", BAD_INPUT)
+            self.figure, axes = axes[0].figure, axes.reshape(rows, columns)
+        self.axes = axes.ravel()
+        for letter, ax in zip("abcdefghi", self.axes if letters else ()):
+            ax.set_title(f"({letter})", loc="left", fontsize=9, fontweight="bold")
+        if squeeze and 1 in (rows, columns):
+            return self.axes if rows * columns > 1 else self.axes[0]
+        return axes
 
+    def stacked(self, count, width=5.6, height=2.4, margin=0.3, **options):
+        """A column of panels with their letters, as a list."""
+        self(count, figsize=(width, height * count + margin), letters=True, **options)
+        return list(self.axes)
 
-def lettered(axes):
-    for letter, ax in zip("abcdefghi", axes):
-        ax.set_title(f"({letter})", loc="left", fontsize=9, fontweight="bold")
-    return list(axes)
+    def add_legends(self):
+        """To panels that have none and name a few things that no legend names yet."""
+        legends = [legend for ax in self.axes if (legend := ax.get_legend())]
+        named = {text.get_text() for legend in legends for text in legend.get_texts()}
+        for ax in self.axes:
+            labels = ax.get_legend_handles_labels()[1]
+            if ax.get_legend() is None and len(labels) <= 8 and not named.issuperset(labels):
+                ax.legend()
+                named.update(labels)
 
 
 def shade_range():
@@ -127,6 +141,23 @@ def shade_range():
 def shades(count):
     """Colours from dark to light with time, readable in grey and by colour-blind eyes."""
     return plt.get_cmap("viridis")(np.linspace(*shade_range(), max(count, 2)))[:count]
+
+
+def shaded(items):
+    """Items, each with its shade."""
+    items = list(items)
+    return zip(items, shades(len(items)))
+
+
+def times_of(groups, units):
+    """The shades and the names of the times of snapshots or profiles, by time and in its order."""
+    times = sorted({group["time"] for group in groups})
+    return dict(shaded(times)), {time: rf"$t={time / units.t:.5g}$" for time in times}
+
+
+def note(ax, text):
+    """Adds a line above a panel, on the right."""
+    ax.set_title(text, loc="right", fontsize=8)
 
 
 def shade_map():

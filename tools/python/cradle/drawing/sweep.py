@@ -4,8 +4,8 @@ summary."""
 import numpy as np
 
 from . import beyond
-from .cooling import ring_of, sticky_law
-from .style import BLUE, GREY, ORANGE, distinct, lettered, plt, shade_map, shades, stacked, subplots
+from .cooling import cooled, ring_of, sticky_law
+from .style import BLUE, GREY, ORANGE, distinct, plt, shade_map, shades
 from .zone import model_width
 
 SPEED, LOSS = "initial.speed", "law.loss"
@@ -71,28 +71,21 @@ def label_of(point):
     return point.law + (rf", ${symbol}={point.setting('law', parameter):.4g}$" if parameter else "") + slow
 
 
-def draw_cooling(result, axes):
+def draw_cooling(result, panels):
     points = cooling_points(result)
     reference = next((p for p in points if p.law == "sticky"), None)
-    figure, (top, below) = stacked(axes, 2, height=2.9, sharex=True)
+    top, below = panels.stacked(2, height=2.9, sharex=True)
     others = [p for p in points if p is not reference]
     shown = others + ([reference] if reference else [])
     labels = distinct(map(label_of, shown), shown)
     for point, colour, label in zip(shown, [*shades(len(others)), "k"], labels):
-        particles, speed, spacing = ring_of(point)
-        later = point.means["time"] * speed / spacing > 0.03  # nothing has met before
-        time = point.means["time"][later]
-        energy = point.means["energy"][later] / particles
+        _, time, energy, law = cooled(point)
         line = "--" if point.law == "inelastic" else "-"
         top.loglog(time, energy, line, color=colour, label=label, zorder=3 if point is reference else 2)
         if reference is not None:
-            seen = reference.means["time"] > 0
-            known = np.interp(np.log(time), np.log(reference.means["time"][seen]),
-                              np.log(reference.means["energy"][seen] / ring_of(reference)[0]), left=np.nan,
-                              right=np.nan)
-            below.loglog(time, energy / np.exp(known), line, color=colour)
-        else:
-            below.loglog(time, energy / sticky_law(point, time), line, color=colour)
+            _, seen, known, _ = cooled(reference)
+            law = np.exp(np.interp(np.log(time), np.log(seen), np.log(known), left=np.nan, right=np.nan))
+        below.loglog(time, energy / law, line, color=colour)
     time = points[0].means["time"]
     law = sticky_law(points[0], time)
     shown = law < 2 * max(p.means["energy"].max() / ring_of(p)[0] for p in points)
@@ -101,12 +94,11 @@ def draw_cooling(result, axes):
     top.set_ylabel(r"energy per particle $E\,/\,N$")
     below.set(xlabel="time ($t$)", ylabel=r"$E\,/\,E_{\mathrm{sticky}}$")
     top.legend(loc="lower left")
-    return figure
 
 
 # ---- the width of the interaction zone
 
-def draw_widths(result, keys, axes):
+def draw_widths(result, keys, panels):
     """Fig. 8. The bar shows the width to u_crit; the upper bar extends to u0/|slope|, where u+ would be 0 as in
     (13)."""
     width = result.sweep["zone_width"]
@@ -116,7 +108,7 @@ def draw_widths(result, keys, axes):
     spacing = first.setting("initial", "spacing", 1.0)
     error = error_of(result, "zone_width")
     error = np.zeros(len(width)) if error is None else error
-    figure, ax = subplots(axes, figsize=(5.2, 4.2))
+    ax = panels(figsize=(5.2, 4.2))
     other = ax.twiny()
     for axes, key, values, fixed, mark, line, colour in ((ax, SPEED, speed, loss, "o", "--", BLUE),
                                                          (other, LOSS, loss, speed, "s", "-", ORANGE)):
@@ -144,7 +136,6 @@ def draw_widths(result, keys, axes):
         axes.xaxis.set_minor_formatter(plt.NullFormatter())
         axes.xaxis.set_major_locator(plt.matplotlib.ticker.LogLocator(subs=(1, 2, 5)))
         axes.xaxis.set_major_formatter(plt.FuncFormatter(lambda value, _: f"{value:.3g}"))
-    return figure
 
 
 def commonest(values):
@@ -154,13 +145,13 @@ def commonest(values):
 
 # ---- anything else
 
-def draw_cuts(result, keys, axes):
+def draw_cuts(result, keys, panels):
     """Each number of the summary against each key, with the other keys at their most frequent values (NaN: the key does
     not apply); without keys, against the number of the point."""
     names = numbers(result)
     columns = dict(list(keys.items())[:3]) or {"point": np.arange(len(result.sweep[names[0]]))}
     size = (max(5.6, 3 * len(columns)), 1.9 * len(names) + 0.3)
-    figure, axes = subplots(axes, len(names), len(columns), figsize=size, squeeze=False, sharex="col", sharey="row")
+    axes = panels(len(names), len(columns), figsize=size, squeeze=False, sharex="col", sharey="row")
     for column, (key, x) in enumerate(columns.items()):
         cut = np.isfinite(x)
         for values in (values for name, values in keys.items() if name != key):
@@ -178,7 +169,6 @@ def draw_cuts(result, keys, axes):
     for ax, name in zip(axes[:, 0], names):
         unit = result.sweep[name].unit
         ax.set_ylabel(name.replace("_", " ") + (f" (${unit}$)" if unit not in ("", "1") else ""))
-    return figure
 
 
 def wide(values, ratio=30):
@@ -191,12 +181,12 @@ def spread(scale, values, ratio=30):
         scale("log")
 
 
-def draw_map(result, keys, axes):
+def draw_map(result, keys, panels):
     """Numbers in the plane of two keys; a cross marks a missing one."""
     names, (x_key, y_key) = numbers(result), sorted(keys, key=lambda key: -len(np.unique(keys[key])))
     columns = min(2 if len(names) < 5 else 3, len(names))
     rows = -(-len(names) // columns)
-    figure, axes = subplots(axes, rows, columns, figsize=(3.4 * columns, 2.8 * rows), squeeze=False)
+    axes = panels(rows, columns, figsize=(3.4 * columns, 2.8 * rows), squeeze=False, letters=True)
     x, y = keys[x_key], keys[y_key]
     for k, ax in enumerate(axes.flat):
         if k >= len(names):
@@ -207,9 +197,7 @@ def draw_map(result, keys, axes):
         norm = plt.matplotlib.colors.LogNorm() if wide(values) else None
         dots = ax.scatter(x[known], y[known], c=values[known], norm=norm, marker="s", s=60, cmap=shade_map())
         ax.plot(x[~known], y[~known], "x", color=GREY)
-        figure.colorbar(dots, ax=ax, label=names[k].replace("_", " "))
+        panels.figure.colorbar(dots, ax=ax, label=names[k].replace("_", " "))
         spread(ax.set_xscale, x, 8)
         spread(ax.set_yscale, y, 8)
         ax.set(xlabel=x_key, ylabel=y_key)
-    lettered(axes.flat[:len(names)])
-    return figure

@@ -2,7 +2,7 @@
 Kadanoff, Phys. Rev. Lett. 74, 1268, 1995)."""
 import numpy as np
 
-from .style import BLUE, GREY, ORANGE, stacked
+from .style import BLUE, GREY, ORANGE
 
 FEW = 12  # snapshots, for quantiles against time to mean something
 
@@ -17,9 +17,9 @@ def given_by(series):
     return [name for name in ("wall_left_energy", "wall_right_energy") if name in series]
 
 
-def draw(result, axes):
+def draw(result, panels):
     series, snapshots = result.means, result.snapshots
-    figure, axes = stacked(axes, 3, height=2.2, sharex=True)
+    axes = panels.stacked(3, height=2.2, sharex=True)
     times = np.array([s["time"] for s in snapshots])
     places = np.array([np.quantile(s["x"], (0.1, 0.5, 0.9)) for s in snapshots])
     energies = [0.5 * s["m"] * s["v"] ** 2 for s in snapshots]
@@ -42,4 +42,3 @@ def draw(result, axes):
     axes[2].semilogy(series["time"][given > 0], given[given > 0], color=ORANGE, lw=1.2, label="given by the walls")
     axes[2].set(xlabel="time ($t$)", ylabel=r"energy ($m\,l^2/t^2$)")
     axes[2].legend(loc="lower right", fontsize=7)
-    return figure

@@ -3,7 +3,7 @@ over time, and the linear model of section VI: equations (9) and (10) with 2L of
 width is the length over which u+ falls from u0 to u_crit at its steepest slope; (13) counts the fall to 0."""
 import numpy as np
 
-from .style import BLUE, GREY, ORANGE, beside, stacked
+from .style import BLUE, GREY, ORANGE, beside, note
 
 EXCESS = np.sqrt(6.0)  # k = n~/n0, where (12) and (13) agree
 
@@ -18,14 +18,14 @@ def model_width(speed, loss, spacing=1.0):
     return speed ** 2 * spacing / (loss * (2 + EXCESS))
 
 
-def draw_zone(result, units, axes):
+def draw_zone(result, units, panels):
     zone = result.table("zone")
     speed, loss = result.setting("initial", "speed", 0.5), result.setting("law", "loss", np.nan)
     spacing = result.setting("initial", "spacing", 1.0)
     x = zone["x"] / units.x
     half = model_width(speed, loss, spacing) / 2 / units.x
     measured, error = zone["width"] / units.x, zone["width_error"] / units.x
-    figure, (velocity, density, mass) = stacked(axes, 3, height=2.1, sharex=True)
+    velocity, density, mass = panels.stacked(3, height=2.1, sharex=True)
     slow = 2 * np.sqrt(loss)
     formed = bool(np.isfinite(measured))  # u+ has fallen to u_crit within the bins; before there is nothing to model
     for sign, name, colour, line in ((1, "right", BLUE, "-"), (-1, "left", ORANGE, "--")):
@@ -46,8 +46,8 @@ def draw_zone(result, units, axes):
         density.plot(x, zone[f"density_{name}"] * spacing, **dots)
     mass.plot(x, zone["mass_density"] * spacing, drawstyle="steps-mid", color=BLUE)
     mass.set_yscale("log")
-    mass.set_title("peaks: the heavy clusters; shaded: $2L$ of Eq. (13)" if formed else
-                   "no zone yet: $u_+$ has not fallen to $u_\\mathrm{crit}$", loc="right", fontsize=8)
+    note(mass, "peaks: the heavy clusters; shaded: $2L$ of Eq. (13)" if formed else
+         "no zone yet: $u_+$ has not fallen to $u_\\mathrm{crit}$")
     if formed:
         for ax in (velocity, density, mass):
             ax.axvspan(-half, half, color=GREY, alpha=0.18, lw=0, zorder=0)
@@ -64,9 +64,7 @@ def draw_zone(result, units, axes):
              xlabel=units.position_label())
     beside(velocity), beside(density)
     begin, end = zone["from"] / units.t, zone["until"] / units.t
-    velocity.set_title(f"average over $t={begin:.5g}$ to ${end:.5g}$, {zone['samples']} samples", loc="right",
-                       fontsize=8)
-    return figure
+    note(velocity, f"average over $t={begin:.5g}$ to ${end:.5g}$, {zone['samples']} samples")
 
 
 def draw_width(ax, measured, error, longer, model, top):

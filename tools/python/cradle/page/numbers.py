@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ..result import Result
+from ..result import Result, fronts
 from ..tables import Table
 from .elements import code, count_of, enclosed, number, rows, tag, text, valued
 
@@ -84,13 +84,6 @@ def ends(result: Result) -> Entries:
     if heaviest is not None and np.isfinite(heaviest["mass"][-1]).all():
         mass = " and ".join(number(float(value)) for value in heaviest["mass"][-1])
         yield "two heaviest clusters", valued(mass, "m"), tag("unknown")
-
-
-def fronts(result: Result) -> list[str]:
-    """The fronts that run into something: none towards a wall, which is all that there is to reach, or of a gas."""
-    if result.word("initial", "type") == "gas":
-        return []
-    return [f"front_{side}" for side in ("left", "right") if side not in result.scene.get("walls", {})]
 
 
 def resolved(value: float, error: float) -> int:

@@ -4,6 +4,7 @@ from __future__ import annotations
 import base64
 import hashlib
 import html
+import io
 import json
 import os
 import shlex
@@ -21,12 +22,12 @@ from .elements import code, count_of, number, preformatted, rows, section, text
 from .captions import SEE
 from .intro import introduction
 from .numbers import Entries, last, numbers, warnings
-from .svg import picture
 from .tables import tables
 
 # The browser may load nothing that is not in the page.
 POLICY = ("default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data: blob:; "
           "connect-src data: blob:; worker-src blob:")
+LARGEST = 1_500_000  # bytes of SVG; beyond it pixels are smaller, and browsers faster with them
 LONGEST_SCENE = 100_000  # characters; listed particles may be many
 
 
@@ -83,6 +84,34 @@ def lead(result: Result) -> str:
         parts.append(count_of(about["replicas"], "replica"))
     parts += [text(about.get("precision", "")), f"<b>{text(result.outcome)}</b>"]
     return " · ".join(part for part in parts if part)
+
+
+def picture(draw, caption: str) -> str:
+    """The elements for a picture of cradle.plot.drawings: the style sheet shows the one that suits the page, and prints
+    the light one. Same picture, same text."""
+    return "".join(f'<img class="{name}" alt="{html.escape(caption)}" src="{data_of(draw, name == "dark")}">'
+                   for name in ("light", "dark"))
+
+
+def data_of(draw, dark: bool) -> str:
+    """A picture as an address: SVG, or PNG if that is smaller."""
+    import matplotlib.pyplot as plt
+
+    from ..drawing.pictures import write
+    figure = draw(dark=dark, titled=False)  # the page has the title
+    try:
+        for extension, kind in (("svg", "svg+xml"), ("png", "png")):
+            drawn = io.BytesIO()
+            write(figure, drawn, extension, dark)
+            if len(drawn.getvalue()) <= LARGEST:
+                break
+        return data_url(f"image/{kind}", drawn.getvalue())
+    finally:
+        plt.close(figure)
+
+
+def data_url(kind: str, content: bytes) -> str:
+    return f"data:{kind};base64,{base64.b64encode(content).decode('ascii')}"
 
 
 def pictures(result: Result) -> str:
@@ -151,7 +180,7 @@ def again(result: Result) -> str:
     if len(scene) > LONGEST_SCENE:
         export = f"cradle export {os.path.basename(result.path)} --to DIR"
         return caption + f"<p>The scene has {number(len(scene))} characters: {code(export)} writes it.</p>\n"
-    link = "data:application/toml;base64," + base64.b64encode(scene.encode()).decode("ascii")
+    link = data_url("application/toml", scene.encode())
     return caption + ('<p class=screen><button type="button" class="copy" data-of="scene">copy the scene</button> '
                       f'<a download="{html.escape(name)}.toml" href="{link}">save it</a></p>\n'
                    + preformatted(scene).replace("<pre>", '<pre id="scene">', 1))

@@ -58,13 +58,10 @@ def replicas(result: Result) -> str:
         rows = ([(int(value), text(outcomes[int(value)])) if name == "outcome" and int(value) in outcomes else
                  cell(value) for name in names for value in (table[name].values[row],)] for row in range(count))
         return sortable(count_of(count, "replica"), heads, rows)
-    rows = []
-    for share in QUANTILES:
-        rows.append([(share, f"{100 * share:g} %")])
-        for name in names[1:]:
-            known = np.asarray(table[name], float)
-            known = known[np.isfinite(known)]
-            rows[-1].append(cell(np.quantile(known, share)) if known.size else cell(np.nan))
+    columns = [np.asarray(table[name], float) for name in names[1:]]
+    columns = [values[np.isfinite(values)] for values in columns]
+    rows = ([(share, f"{100 * share:g} %"), *(cell(np.quantile(known, share) if known.size else np.nan)
+                                              for known in columns)] for share in QUANTILES)
     return sortable(f"quantiles of {number(count)} replicas (the file has all)", ["quantile", *heads[1:]], rows)
 
 

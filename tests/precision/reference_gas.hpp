@@ -119,6 +119,7 @@ template <class T> struct Gas {
   }
   T place(const Cell& cell) const { return flown(cell) + acceleration * time * time / 2; }
   T velocity(const Cell& cell) const { return cell.v + acceleration * time; }
+  T gap_after(std::size_t k) const { return place(cells[after(k)]) - place(cells[k]) + seam(k); }
   T gap_to_wall(bool left) const {
     const GasWall<T>& wall = *walls[left ? 0 : 1];
     const T at = wall.origin + wall.v * time;

@@ -141,12 +141,4 @@ inline std::string until_collisions(const std::string& file) {
          ".checkpoint 2>.not-yet | grep -q ', [1-9][0-9]* collisions'; do sleep 0.01; done; ";
 }
 
-// The initial perturbation of the published fixtures: the splitmix64 finaliser of the particle's number.
-inline std::uint64_t hash(std::uint64_t i) {
-  std::uint64_t z = i + 0x9E3779B97F4A7C15;
-  z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9;
-  z = (z ^ (z >> 27)) * 0x94D049BB133111EB;
-  return z ^ (z >> 31);
-}
-
 }  // namespace cradle::tests

@@ -6,6 +6,7 @@
 #include <iterator>
 #include <map>
 #include <sstream>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -52,6 +53,7 @@ inline std::vector<ListedCase> cases_in(const std::string& name) {
         open->push_back(line);
     }
   }
+  if (all.empty()) throw std::logic_error(name + " has no cases");
   return all;
 }
 

@@ -142,7 +142,4 @@ inline std::string until_collisions(const std::string& file) {
          ".checkpoint 2>.not-yet | grep -q ', [1-9][0-9]* collisions'; do sleep 0.01; done; ";
 }
 
-// The initial perturbation of the published fixtures: the splitmix64 finaliser of the particle's number.
-inline std::uint64_t hash(std::uint64_t i) { return splitmix64(i + 0x9E3779B97F4A7C15); }
-
 }  // namespace cradle::tests

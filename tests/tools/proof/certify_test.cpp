@@ -143,26 +143,6 @@ TEST_F(Certified, PlacesOnARingAreFoldedAfterAnyNumberOfTurns) {
     EXPECT_GE(x, 0);
     EXPECT_LT(x, 8.5);
   }
-#ifdef CRADLE_WITH_MPFR
-  EXPECT_TRUE(begins(
-      certify_scene("law = {type = \"inelastic\", restitution = 1}\ninitial = {type = \"list\", x = [0.3, 2.5, 4], v = "
-                    "[1.1, 1.1, 1.1], length = 5.5}\noutput.snapshots = [1e49]\n"
-                    "run = {until = 1e49, precision = \"mpfr\", digits = 100}\n")
-          .out,
-      "proved"))
-      << "2e48 turns, of which a double counts the first digits";
-#endif
-}
-
-TEST_F(Certified, AMassTooSmallForADoubleIsThere) {
-  certify_scene("law = {type = \"inelastic\", restitution = 0.9, cutoff = 0.01}\nrun.until = 0.47\n"
-                "initial = {type = \"rows\", left = {particles = 3, speed = 1, density = 1}, right = "
-                "{particles = 3, speed = -1, density = 1}, centre = {mass = 1e-400, speed = 0.1}}\n",
-                2);  // a double does not hold it
-#ifdef CRADLE_WITH_MPFR
-  const Printed printed = certify("scene.toml --set run.precision=mpfr --set run.digits=50");
-  EXPECT_TRUE(begins(printed.out, "proved: 1 collisions")) << "without it there is none";
-#endif
 }
 
 // A collision just at the time of a snapshot leaves that one open; those after it keep their numbers.

@@ -9,19 +9,19 @@
 #include <limits>
 #include <optional>
 
+#include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/tools/program.hpp"
 
 namespace cradle::tests::run_test {
 
 class Run : public ProgramTest {
  protected:
-  // x_i = (2i - N + 1)/2 + ((h & 0x3FFFF) - 131072)/2^28, exact in decimals of 28 and fewer places.
+  // The shock of tests/core/fixtures.hpp, which is exact in decimals of 28 and fewer places.
   void expect_published_counts(const std::string& coordinates) const {
     constexpr int n = 8000;
     std::string csv = "x,v\n";
     for (int i = 0; i < n; ++i) {
-      const auto units =
-          static_cast<double>(static_cast<std::int64_t>(hash(static_cast<std::uint64_t>(i)) & 0x3FFFF) - 131072);
+      const auto units = static_cast<double>(test::rshock_displacement(i));
       csv += fmt::format("{:.28f},{}\n", (2 * i - n + 1) / 2.0 + units / 268435456.0, i < n / 2 ? "0.5" : "-0.5");
     }
     write("particles.csv", csv);

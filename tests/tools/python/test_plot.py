@@ -70,7 +70,7 @@ class Pictures(small.Case):
     def test_an_ensemble_of_a_gas_has_no_front(self):
         gas = {"law": {"type": "inelastic", "restitution": 0.9}, "initial": {"type": "gas", "particles": 20},
                "run": {"until": 20, "stop_gap": 1e-9}}
-        with cradle.ensemble(gas, 2, output="gas.h5") as result:
+        with cradle.ensemble(gas, 2, output="gases.h5") as result:
             self.assertIn("front_right", result.series)
             self.assertEqual([ax.get_ylabel()[:6] for ax in cradle.plot.ensemble(result).axes], ["energy", "collis"])
 

@@ -67,6 +67,13 @@ class Pictures(small.Case):
         figure = cradle.plot.ensemble(small.tagged_ensemble())
         self.assertEqual([text for ax in figure.axes for text in ax.get_legend_handles_labels()[1]], [])
 
+    def test_an_ensemble_of_a_gas_has_no_front(self):
+        gas = {"law": {"type": "inelastic", "restitution": 0.9}, "initial": {"type": "gas", "particles": 20},
+               "run": {"until": 20, "stop_gap": 1e-9}}
+        with cradle.ensemble(gas, 2, output="gases.h5") as result:
+            self.assertIn("front_right", result.series)
+            self.assertEqual([ax.get_ylabel()[:6] for ax in cradle.plot.ensemble(result).axes], ["energy", "collis"])
+
     def test_draw_into_given_axes(self):
         figure, axes = plt.subplots(2, 2)
         given = cradle.plot.energy(small.shock(), axes=axes[:, 1])

@@ -53,19 +53,13 @@ function microscopeKnownFrom(world, a, b, e, step) {
     gap = microscopeAhead(world, world.x0[b] - world.x0[a]);
     w = world.v0[a] - world.v0[b];
   }
-  const path = met < 0 && !kicks.length && e < 0 ? 0 : gap;
-  return microscopeFlown(world, { gap, w, path }, met, kicks, e, -step);
-}
-
-// Gap, closing speed and path at collision e from those at collision `at`, using the kicks between, the last one first;
-// sign: 1 forwards, -1 backwards.
-function microscopeFlown(world, { gap, w, path }, at, kicks, e, sign) {
-  for (const [until, kick] of [...kicks.reverse(), [e, 0]]) {
-    const change = w * (sign > 0 ? microscopeFlight(world, at, until) : microscopeFlight(world, until, at));
-    gap -= sign * change;
+  let path = met < 0 && !kicks.length && e < 0 ? 0 : gap, from = met;
+  for (const [until, kick] of [...kicks.reverse(), [e, 0]]) {  // on to e
+    const change = w * microscopeBetween(world, from, until);
+    gap -= change;
     path += Math.abs(change);
-    w += sign * kick;
-    at = until;
+    w -= step * kick;
+    from = until;
   }
   return { gap, w, path };
 }

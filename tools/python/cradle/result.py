@@ -232,7 +232,6 @@ class Result:
 
 
 def fronts(result: Result) -> list[str]:
-    """The fronts that run into something: none towards a wall, which is all that there is to reach, or of a gas."""
-    if result.word("initial", "type") == "gas":
-        return []
+    """The fronts that run into something: none towards a wall, which is all that there is to reach. (So a gas has none:
+    it is between two.)"""
     return [f"front_{side}" for side in ("left", "right") if side not in result.scene.get("walls", {})]

@@ -17,22 +17,18 @@ def legs_of(result):
     """For each particle a list of (times, positions, mass, known). Between two snapshots a particle has the first
     one's velocity until its first collision, and the last one's after its last collision; between these two
     collisions its path is not known."""
-    events = result.events
-    collisions = {}
-    for particle, time in zip(np.concatenate([events.get("left", []), events.get("right", [])]),
-                          np.tile(events.get("time", []), 2)):
-        collisions.setdefault(int(particle), []).append(time)
+    left, right, time = (np.asarray(result.events.get(name, ())) for name in ("left", "right", "time"))
     legs = {}
     for before, after in zip(result.snapshots[:-1], result.snapshots[1:]):
         later = {int(particle): k for k, particle in enumerate(after["index"])}
         for k, particle in enumerate(before["index"].astype(int)):
             begin, end = before["time"], after["time"]
-            met = sorted(t for t in collisions.get(particle, []) if begin < t <= end)
+            met = np.sort(time[((left == particle) | (right == particle)) & (begin < time) & (time <= end)])
             x, v, m = before["x"][k], before["v"][k], before["m"][k]
             out = legs.setdefault(particle, [])
-            first = met[0] if met else end
+            first = met[0] if len(met) else end
             out.append(((begin, first), (x, x + v * (first - begin)), m, True))
-            if met and particle in later:
+            if len(met) and particle in later:
                 j = later[particle]
                 x_last = after["x"][j] - after["v"][j] * (end - met[-1])
                 if met[-1] > first:

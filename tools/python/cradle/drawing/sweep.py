@@ -110,8 +110,11 @@ def draw_widths(result, keys, panels):
     error = np.zeros(len(width)) if error is None else error
     ax = panels(figsize=(5.2, 4.2))
     other = ax.twiny()
-    for axes, key, values, fixed, mark, line, colour in ((ax, SPEED, speed, loss, "o", "--", BLUE),
-                                                         (other, LOSS, loss, speed, "s", "-", ORANGE)):
+    for axes, values, fixed, model, given, label, mark, line, colour in (
+            (ax, speed, loss, lambda u0, lost: model_width(u0, lost, spacing), r"$E_\mathrm{loss}=%.4g$",
+             r"$u_0$ in $l/t$ (circles)", "o", "--", BLUE),
+            (other, loss, speed, lambda lost, u0: model_width(u0, lost, spacing), "$u_0=%.4g$",
+             r"$E_\mathrm{loss}$ in $m\,l^2/t^2$ (squares)", "s", "-", ORANGE)):
         at = commonest(fixed)
         cut = (fixed == at) & np.isfinite(width)
         if len(np.unique(values[cut])) < 2:
@@ -119,14 +122,11 @@ def draw_widths(result, keys, panels):
             continue
         slow = np.minimum(2 * np.sqrt(loss) / speed, 0.99)  # u_crit/u0
         upper = np.maximum(error, width * slow / (1 - slow))[cut]
-        given = rf"$E_\mathrm{{loss}}={at:.4g}$" if key == SPEED else rf"$u_0={at:.4g}$"
         axes.errorbar(values[cut], width[cut], yerr=[error[cut], upper], fmt=mark, color=colour, capsize=3, lw=1, ms=5,
-                      label=given)
+                      label=given % at)
         fine = np.geomspace(values[cut].min(), values[cut].max(), 200)
-        axes.plot(fine, model_width(fine, at, spacing) if key == SPEED else model_width(at, fine, spacing), line,
-                  color=colour, label=f"Eq. (13), {given}")
-        axes.set_xlabel(r"$u_0$ in $l/t$ (circles)" if key == SPEED else
-                        r"$E_\mathrm{loss}$ in $m\,l^2/t^2$ (squares)", color=colour)
+        axes.plot(fine, model(fine, at), line, color=colour, label=f"Eq. (13), {given % at}")
+        axes.set_xlabel(label, color=colour)
         axes.set(xscale="log", yscale="log")
     ax.set_ylabel(r"width of the zone $2L$" if spacing != 1 else r"width of the zone $2L\,/\,l$")
     handles = [item for axes in (ax, other) for item in zip(*axes.get_legend_handles_labels())]

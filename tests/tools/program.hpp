@@ -14,7 +14,6 @@
 #include <stdexcept>
 #include <string>
 
-#include "cradle/core/base/counter_rng.hpp"
 #include "cradle/tests/places.hpp"
 #include "cradle/tests/texts.hpp"
 #include "cradle/tools/result/reader.hpp"

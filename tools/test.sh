@@ -16,4 +16,5 @@ set_up tests
 configure -DCRADLE_TESTS=ON -DCRADLE_BENCH=ON "-DCRADLE_WERROR=${CRADLE_WERROR:-OFF}"
 compile --target all
 echo "== testing $build"
-exec ctest --preset "$preset" "${leave_out[@]}" -j "$(processors)" --output-on-failure  # its summary is the last thing seen
+# Its summary is the last thing seen.
+exec ctest --preset "$preset" "${leave_out[@]}" -j "$(processors)" --output-on-failure

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-
 #include "cradle/tools/engines/precision.hpp"
 
 namespace cradle::tools {

@@ -17,6 +17,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -64,6 +65,7 @@ template <Real T> class ClusterSegment {
   double queue_key(Slot s) { return line_.gaps.queue_key(s, line_.closing(s)); }
   double queue_time(const T& local) const { return line_.gaps.queue_time(local); }
   bool across_seam() const { return seam_ > 0; }
+  static constexpr bool is_ring() { return false; }  // a whole one has no segment
   void lose(Slot s, const T& energy) { line_.gaps.lose(s, energy); }
   // The collision at a gap of the segment's own, before it is made.
   Observed observed(Slot s, const T& time) const {
@@ -167,7 +169,7 @@ template <Real T> class ClusterSegment {
     each_slot(chain, own, [&](Slot slot) {
       for (const auto& [first, count] : report.cells)
         if (slot - first < count) return;
-      after.put(slot, {{}, T(0), T(1), slot, slot, 0});
+      after.put(slot, {{}, T(0), T(1), 0, slot, slot});
     });
   }
 
@@ -263,6 +265,11 @@ template <Real T> class ClusterSegment {
     set_inner();
     return {own, notice};
   }
+
+  // ---- for steps (steps/stepped_clusters.hpp)
+  template <class Law, class Part> friend struct Stepped;
+  // What collisions at edges change.
+  auto edges() { return std::tie(own_first_, own_last_, reached_left_, reached_right_, farthest_, seam_); }
 
   ClusterLine<T> line_;
   std::vector<ParticleIndex> place_;  // in the chain, of slots here, for observers

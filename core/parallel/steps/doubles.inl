@@ -28,40 +28,41 @@ HWY_INLINE unsigned bits_up_to(const Four& x, double last) {
 }
 
 // Where the gaps of four collisions are.
-struct Places4 {
+template <std::ptrdiff_t width> struct Places4 {  // of a cell, in doubles
   std::size_t i[4];
-  Gap<double>* cell[4];
+  double* cell[4];
   HWY_INLINE Places4(const Local& l, const std::uint32_t* four) {
-    for (int k = 0; k < 4; ++k) i[k] = four[k], cell[k] = l.cells + i[k];
+    for (int k = 0; k < 4; ++k) i[k] = four[k], cell[k] = l.numbers + width * static_cast<std::ptrdiff_t>(i[k]);
   }
   HWY_INLINE Four of(const double* array) const { return Four{array[i[0]], array[i[1]], array[i[2]], array[i[3]]}; }
 };
 
 // Four gaps: those of the collisions (side 0), or the ones left (-1) or right of them. A gap lies in memory as gap,
-// local time, time of collision and closing speed; here it is a column.
+// local time, time of collision and closing speed (of clusters the particle's velocity); here it is a column.
 struct Cells {
   Four gap, time, due, closing;
 
-  static HWY_INLINE Cells at(const Places4& places, std::ptrdiff_t side) {
-    const Four a = fetch(&places.cell[0][side].gap), b = fetch(&places.cell[1][side].gap),
-               c = fetch(&places.cell[2][side].gap), d = fetch(&places.cell[3][side].gap);
+  template <std::ptrdiff_t width> static HWY_INLINE Cells at(const Places4<width>& places, std::ptrdiff_t side) {
+    const Four a = fetch(places.cell[0] + width * side), b = fetch(places.cell[1] + width * side),
+               c = fetch(places.cell[2] + width * side), d = fetch(places.cell[3] + width * side);
     const Four ab = __builtin_shufflevector(a, b, 0, 4, 2, 6), cd = __builtin_shufflevector(c, d, 0, 4, 2, 6),
                more_ab = __builtin_shufflevector(a, b, 1, 5, 3, 7), more_cd = __builtin_shufflevector(c, d, 1, 5, 3, 7);
     return {__builtin_shufflevector(ab, cd, 0, 1, 4, 5), __builtin_shufflevector(more_ab, more_cd, 0, 1, 4, 5),
             __builtin_shufflevector(ab, cd, 2, 3, 6, 7), __builtin_shufflevector(more_ab, more_cd, 2, 3, 6, 7)};
   }
-  HWY_INLINE void put_at(const Places4& places, std::ptrdiff_t side, double* due_there) const {
+  template <std::ptrdiff_t width>
+  HWY_INLINE void put_at(const Places4<width>& places, std::ptrdiff_t side, double* due_there) const {
     const Four a = __builtin_shufflevector(gap, time, 0, 4, 2, 6), b = __builtin_shufflevector(gap, time, 1, 5, 3, 7),
                c = __builtin_shufflevector(due, closing, 0, 4, 2, 6),
                d = __builtin_shufflevector(due, closing, 1, 5, 3, 7);
-    put(__builtin_shufflevector(a, c, 0, 1, 4, 5), &places.cell[0][side].gap);
-    put(__builtin_shufflevector(b, d, 0, 1, 4, 5), &places.cell[1][side].gap);
-    put(__builtin_shufflevector(a, c, 2, 3, 6, 7), &places.cell[2][side].gap);
-    put(__builtin_shufflevector(b, d, 2, 3, 6, 7), &places.cell[3][side].gap);
+    put(__builtin_shufflevector(a, c, 0, 1, 4, 5), places.cell[0] + width * side);
+    put(__builtin_shufflevector(b, d, 0, 1, 4, 5), places.cell[1] + width * side);
+    put(__builtin_shufflevector(a, c, 2, 3, 6, 7), places.cell[2] + width * side);
+    put(__builtin_shufflevector(b, d, 2, 3, 6, 7), places.cell[3] + width * side);
     for (int k = 0; k < 4; ++k) due_there[places.i[k] + side] = due[planted(3) ? 0 : k];
   }
 };
-static_assert(sizeof(Gap<double>) == sizeof(Four));
+static_assert(sizeof(Gap<double>) == sizeof(Four) && sizeof(Cell<double>) == 2 * sizeof(Four));
 
 // What is known of all collisions of a step.
 struct Totals {
@@ -125,7 +126,7 @@ HWY_INLINE void fill_up(StepLine& line, const Local& l, bool with_outcomes) {
 // they touch different gaps, and all gaps are read before any is written.
 template <StepLaw law, bool unequal>
 HWY_INLINE void collide(const StepLine& line, Local& l, const StepTask& task, std::size_t k, double end, Totals& made) {
-  const Places4 places(l, l.first + k);
+  const Places4<4> places(l, l.first + k);
   const Cells own = Cells::at(places, 0), left = Cells::at(places, -1), right = Cells::at(places, 1);
   const Four x = own.due, w = own.closing;
   Four after, to_left, to_right;
@@ -192,6 +193,7 @@ HWY_INLINE void enter(const StepLine& line, const Local& l, const StepTask& task
 
 // The collisions of a step, where numbers are doubles.
 template <StepLaw law, bool unequal> struct Doubles {
+  static constexpr bool linked = false;
   Totals made;
 
   HWY_INLINE Doubles(const StepTask&, const StepResult& before) : made{.latest = all(before.last)} {}

@@ -55,16 +55,19 @@ HWY_INLINE void append(unsigned set, std::size_t base, std::uint32_t* list, std:
 // The arrays and lists of a line, where the compiler keeps them in registers.
 struct Local {
   explicit HWY_INLINE Local(StepLine& line)
-      : cells(line.cells), lag(line.lag), due(line.due), bound(line.bound), fraction(line.fraction),
-        reduced(line.reduced), struck(line.struck.data()), struck_mass(line.struck_mass.data()),
-        inner_first(line.inner_first), inner(line.inner), around(line.ring ? line.gaps() : 0),
-        candidates(line.candidates.data()), waiting(line.waiting.data()), first(line.first.data()),
-        edges(line.edges.data()), visited(line.visited.data()) {}
+      : cells(line.cells), numbers(line.numbers), lag(line.lag), due(line.due), bound(line.bound),
+        fraction(line.fraction), reduced(line.reduced), struck(line.struck.data()),
+        struck_mass(line.struck_mass.data()), inner_first(line.inner_first), inner(line.inner),
+        around(line.ring ? line.gaps() : 0), alone(line.alone.data()), candidates(line.candidates.data()),
+        waiting(line.waiting.data()), first(line.first.data()), edges(line.edges.data()), visited(line.visited.data()) {
+  }
 
   Gap<double>* cells;
+  double* numbers;
   const double* lag;
   double *due, *bound, *fraction, *reduced, *struck, *struck_mass;
   std::size_t inner_first, inner, around;  // around: gaps of a ring, else 0
+  const std::uint8_t* alone;
   std::uint32_t *candidates, *waiting, *first, *edges, *visited;
   std::size_t count = 0, later = 0, firsts = 0, at_edges = 0, visits = 0;  // in these lists
 };
@@ -140,16 +143,31 @@ HWY_INLINE bool is_first_on_ring(const Local& l, std::size_t i) {
   return first;
 }
 
+// The same by links.
+HWY_INLINE bool is_first_by_links(const StepLine& line, const Local& l, std::size_t i) {
+  const double due = l.due[i];
+  std::ptrdiff_t left = static_cast<std::ptrdiff_t>(i), right = left;
+  bool first = true;
+  for (std::size_t k = 1; k <= group && first; ++k) {
+    left = line.linked_left(left), right = line.linked_right(right);
+    first = (due < l.due[left]) & (due < l.due[right]);
+  }
+  return first;
+}
+
 // Which of the candidates are first in their neighbourhoods, and which must wait.
-HWY_INLINE void decide(Local& l, double end) {
+template <bool linked> HWY_INLINE void decide(const StepLine& line, Local& l, double end) {
   l.firsts = l.at_edges = l.later = 0;
   for (std::size_t k = 0; k < l.count; ++k) {
     const std::size_t i = l.candidates[k];
     const bool is_due = l.due[i] <= end;
     bool now = is_due & is_first(l.due + i);
     l.waiting[l.later] = static_cast<std::uint32_t>(i);
-    if (i - l.inner_first >= l.inner) [[unlikely]] {
-      now = now && (l.around == 0 || planted(1) || is_first_on_ring(l, i));
+    if (linked ? l.alone[i] != 0 : i - l.inner_first >= l.inner) [[unlikely]] {
+      if (linked)
+        now = now && (planted(1) || is_first_by_links(line, l, i));
+      else
+        now = now && (l.around == 0 || planted(1) || is_first_on_ring(l, i));
       l.later += is_due & !now;
       if (now) l.edges[l.at_edges++] = static_cast<std::uint32_t>(i);
       continue;
@@ -177,6 +195,7 @@ HWY_INLINE void follow(Local& l, std::size_t left, unsigned left_soon, std::size
 
 #include "cradle/core/parallel/steps/doubles.inl"
 #include "cradle/core/parallel/steps/pairs.inl"
+#include "cradle/core/parallel/steps/wet.inl"
 
 namespace cradle {
 namespace HWY_NAMESPACE {
@@ -194,14 +213,24 @@ int step(StepLine& line, const StepTask& task, StepScalars& scalars, double end,
     if (passes == most_passes || std::max(l.count, l.visits) > line.gaps()) return -1;
     if (passes++ % reach == reach - 1) [[unlikely]]
       for (std::size_t k = 0; k < l.count; ++k) line.guard(l.candidates[k] / StepLine::tile);
-    decide(l, end);
+    decide<Collisions::linked>(line, l, end);
     if (l.firsts + l.at_edges == 0 && l.later > 0) return -1;  // at the same time
     collisions.make(line, l, task, scalars, end);
     for (std::size_t k = 0; k < l.at_edges; ++k) {
-      const std::size_t i = l.edges[k], left = line.left_of(i), right = line.right_of(i);
+      const std::size_t i = l.edges[k];
+      std::size_t left = line.left_of(i), right = line.right_of(i);
+      if constexpr (Collisions::linked) {
+        left = line.guarded(line.linked_left(static_cast<std::ptrdiff_t>(i)));
+        right = line.guarded(line.linked_right(static_cast<std::ptrdiff_t>(i)));
+        line.guarded(line.linked_right(static_cast<std::ptrdiff_t>(right)));
+      }
       const bool left_later = l.due[left] > end, right_later = l.due[right] > end;
       if (!scalars.collide(i)) return -1;
       follow(l, left, left_later & (l.due[left] <= end), right, right_later & (l.due[right] <= end));
+      if constexpr (Collisions::linked) {  // the gap behind a particle that has merged is in this place now
+        l.waiting[l.later] = static_cast<std::uint32_t>(i);
+        l.later += l.due[i] <= end;
+      }
     }
     result.collisions += l.firsts;
     if (line.may_leave && end < task.stop && leave(line, l, end, result.collisions - before)) break;
@@ -228,6 +257,7 @@ bool run(StepLine& line, const StepTask& task, StepScalars& scalars, StepPace& p
   if (task.pairs) return run_by<Pairs>(task, line, scalars, pace, result);
 #endif
   if (task.pairs) return false;
+  if (task.law == StepLaw::wet) return run_steps(step<WetCollisions>, line, task, scalars, pace, result);
   if (task.law == StepLaw::any) return run_steps(step<Doubles<StepLaw::any, false>>, line, task, scalars, pace, result);
   if (task.law == StepLaw::of_speed)
     return task.unequal ? run_steps(step<Doubles<StepLaw::of_speed, true>>, line, task, scalars, pace, result)

@@ -28,11 +28,11 @@ HWY_INLINE unsigned bits_up_to(const Four& x, double last) {
 }
 
 // Where the gaps of four collisions are.
-template <std::ptrdiff_t width> struct Places4 {  // of a cell, in doubles
+struct Places4 {
   std::size_t i[4];
   double* cell[4];
   HWY_INLINE Places4(const Local& l, const std::uint32_t* four) {
-    for (int k = 0; k < 4; ++k) i[k] = four[k], cell[k] = l.numbers + width * static_cast<std::ptrdiff_t>(i[k]);
+    for (int k = 0; k < 4; ++k) i[k] = four[k], cell[k] = l.numbers + 4 * i[k];
   }
   HWY_INLINE Four of(const double* array) const { return Four{array[i[0]], array[i[1]], array[i[2]], array[i[3]]}; }
 };
@@ -42,24 +42,28 @@ template <std::ptrdiff_t width> struct Places4 {  // of a cell, in doubles
 struct Cells {
   Four gap, time, due, closing;
 
-  template <std::ptrdiff_t width> static HWY_INLINE Cells at(const Places4<width>& places, std::ptrdiff_t side) {
-    const Four a = fetch(places.cell[0] + width * side), b = fetch(places.cell[1] + width * side),
-               c = fetch(places.cell[2] + width * side), d = fetch(places.cell[3] + width * side);
+  static HWY_INLINE Cells at(const Places4& places, std::ptrdiff_t side) {
+    double* const* cell = places.cell;
+    return at(cell[0] + 4 * side, cell[1] + 4 * side, cell[2] + 4 * side, cell[3] + 4 * side);
+  }
+  static HWY_INLINE Cells at(const double* first, const double* second, const double* third, const double* fourth) {
+    const Four a = fetch(first), b = fetch(second), c = fetch(third), d = fetch(fourth);
     const Four ab = __builtin_shufflevector(a, b, 0, 4, 2, 6), cd = __builtin_shufflevector(c, d, 0, 4, 2, 6),
                more_ab = __builtin_shufflevector(a, b, 1, 5, 3, 7), more_cd = __builtin_shufflevector(c, d, 1, 5, 3, 7);
     return {__builtin_shufflevector(ab, cd, 0, 1, 4, 5), __builtin_shufflevector(more_ab, more_cd, 0, 1, 4, 5),
             __builtin_shufflevector(ab, cd, 2, 3, 6, 7), __builtin_shufflevector(more_ab, more_cd, 2, 3, 6, 7)};
   }
-  template <std::ptrdiff_t width>
-  HWY_INLINE void put_at(const Places4<width>& places, std::ptrdiff_t side, double* due_there) const {
+  HWY_INLINE void put_at(const Places4& places, std::ptrdiff_t side, double* due_there) const {
+    double* const* cell = places.cell;
+    put_at(cell[0] + 4 * side, cell[1] + 4 * side, cell[2] + 4 * side, cell[3] + 4 * side);
+    for (int k = 0; k < 4; ++k) due_there[places.i[k] + side] = due[planted(3) ? 0 : k];
+  }
+  HWY_INLINE void put_at(double* first, double* second, double* third, double* fourth) const {
     const Four a = __builtin_shufflevector(gap, time, 0, 4, 2, 6), b = __builtin_shufflevector(gap, time, 1, 5, 3, 7),
                c = __builtin_shufflevector(due, closing, 0, 4, 2, 6),
                d = __builtin_shufflevector(due, closing, 1, 5, 3, 7);
-    put(__builtin_shufflevector(a, c, 0, 1, 4, 5), places.cell[0] + width * side);
-    put(__builtin_shufflevector(b, d, 0, 1, 4, 5), places.cell[1] + width * side);
-    put(__builtin_shufflevector(a, c, 2, 3, 6, 7), places.cell[2] + width * side);
-    put(__builtin_shufflevector(b, d, 2, 3, 6, 7), places.cell[3] + width * side);
-    for (int k = 0; k < 4; ++k) due_there[places.i[k] + side] = due[planted(3) ? 0 : k];
+    put(__builtin_shufflevector(a, c, 0, 1, 4, 5), first), put(__builtin_shufflevector(b, d, 0, 1, 4, 5), second);
+    put(__builtin_shufflevector(a, c, 2, 3, 6, 7), third), put(__builtin_shufflevector(b, d, 2, 3, 6, 7), fourth);
   }
 };
 static_assert(sizeof(Gap<double>) == sizeof(Four) && sizeof(Cell<double>) == 2 * sizeof(Four));
@@ -114,19 +118,21 @@ HWY_INLINE void follow(Local& l, const std::uint32_t* four, unsigned left_soon, 
 }
 
 // Repeats the last collision of a pass, so that there are four to the end.
+HWY_INLINE void fill_up(std::uint32_t* first, std::size_t count) {
+  for (std::size_t k = count; k > 0 && k < count + 3; ++k) first[k] = first[k - 1];
+}
 HWY_INLINE void fill_up(StepLine& line, const Local& l, bool with_outcomes) {
-  for (std::size_t k = l.firsts; k > 0 && k < l.firsts + 3; ++k) {
-    l.first[k] = l.first[k - 1];
-    if (!with_outcomes) continue;
+  fill_up(l.first, l.firsts);
+  if (!with_outcomes) return;
+  for (std::size_t k = l.firsts; k > 0 && k < l.firsts + 3; ++k)
     line.after[k] = line.after[k - 1], line.to_left[k] = line.to_left[k - 1], line.to_right[k] = line.to_right[k - 1];
-  }
 }
 
 // Makes four collisions of a pass from number k on; the last ones may be one and the same. They are so far apart that
 // they touch different gaps, and all gaps are read before any is written.
 template <StepLaw law, bool unequal>
 HWY_INLINE void collide(const StepLine& line, Local& l, const StepTask& task, std::size_t k, double end, Totals& made) {
-  const Places4<4> places(l, l.first + k);
+  const Places4 places(l, l.first + k);
   const Cells own = Cells::at(places, 0), left = Cells::at(places, -1), right = Cells::at(places, 1);
   const Four x = own.due, w = own.closing;
   Four after, to_left, to_right;

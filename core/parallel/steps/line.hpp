@@ -46,19 +46,21 @@ class StepLine {
   std::size_t left_of(std::size_t i) const { return i > 0 ? i - 1 : ring ? gaps_ - 1 : 0; }
   std::size_t right_of(std::size_t i) const { return ring && i + 1 == gaps_ ? 0 : i + 1; }
 
-  // Of clusters: neighbours by links, which skip vacant cells (-1 and gaps() are beyond the ends); and which gaps have
-  // their collisions made by StepScalars, since a vacant cell or an edge is near.
+  // Of clusters: neighbours by links, which skip vacant cells (-1 and gaps() are beyond the ends).
   Slot slot_of_first = 0;
-  std::vector<std::uint8_t> alone;
   std::ptrdiff_t linked_left(std::ptrdiff_t i) const { return index(clusters[i].left); }
   std::ptrdiff_t linked_right(std::ptrdiff_t i) const { return index(clusters[i].right); }
   std::ptrdiff_t index(Slot s) const {
     return static_cast<std::ptrdiff_t>(s) - static_cast<std::ptrdiff_t>(slot_of_first);
   }
-  // Leaves those from one gap to another to StepScalars, where there are such.
-  void leave_alone(std::ptrdiff_t from, std::ptrdiff_t to) {
-    for (std::ptrdiff_t i = std::max<std::ptrdiff_t>(from, 0); i <= to && i < static_cast<std::ptrdiff_t>(gaps_); ++i)
-      alone[static_cast<std::size_t>(i)] = 1;
+  // What is special about a gap: there is a vacant cell near it; or its collisions are left to StepScalars.
+  enum Special : std::uint8_t { none, near_vacant, edge };
+  std::vector<Special> special;
+  void mark(std::ptrdiff_t from, std::ptrdiff_t to, Special as) {
+    const auto first = std::max<std::ptrdiff_t>(from, 0),
+               end = std::min<std::ptrdiff_t>(to + 1, static_cast<std::ptrdiff_t>(gaps_));
+    Special* const all = special.data();
+    for (std::ptrdiff_t i = first; i < end; ++i) all[i] = std::max(all[i], as);
   }
 
   // A step may leave a few gaps that are due to the next one. Those that are due up to `listed_to` are the first `left`
@@ -68,7 +70,7 @@ class StepLine {
   std::size_t left = 0;
 
   // ---- lists of a step
-  std::vector<std::uint32_t> candidates, waiting, first, edges;
+  std::vector<std::uint32_t> candidates, waiting, first, first_by_links, edges;
   std::vector<std::uint32_t> visited;  // tiles with collisions
   std::vector<double> struck, struck_mass, to_left, to_right, after;
   std::vector<double> low_struck, low_to_left, low_to_right, low_after, work;  // of pairs
@@ -83,7 +85,7 @@ class StepLine {
   }
   void take(Cell<double>* first_cell, Slot first, const double* first_lag, std::size_t gaps) {
     cells = nullptr, clusters = first_cell, slot_of_first = first;
-    alone.assign(gaps, 0);
+    special.assign(gaps, none);
     take(&first_cell->gap, sizeof(Cell<double>), first_lag, gaps);
   }
   // Takes so many gaps, the arrays of which the caller fills.
@@ -186,7 +188,7 @@ class StepLine {
     if (kept_.size() < width_ * tile * tiles()) kept_.resize(width_ * tile * tiles());
     if (first.size() < gaps + tile) {
       for (auto* list : {&candidates, &waiting, &visited}) list->resize(3 * gaps + tile);
-      for (auto* list : {&first, &edges}) list->resize(gaps + tile);
+      for (auto* list : {&first, &first_by_links, &edges}) list->resize(gaps + tile);
       for (auto* list : {&struck, &struck_mass, &to_left, &to_right, &after}) list->resize(gaps + tile);
     }
   }

@@ -1,7 +1,7 @@
 #pragma once
 // A segment of a chain of clusters uses steps (steps.hpp) for wet particles that pass through each other. It makes
-// itself the collisions in which particles merge, those near a cell that such a collision has left vacant, and those at
-// cuts, at fronts and at the seam. If steps fail, it takes its copy anew and goes through its event loop.
+// itself the collisions in which particles merge and those at cuts, at fronts and at the seam. If steps fail, it takes
+// its copy anew and goes through its event loop.
 
 #include <array>
 #include <concepts>
@@ -44,9 +44,9 @@ requires(!Law::bounces_only && requires(const Law& law) {
     made_ = {};
     const std::size_t held = part.last_ + 1 - Part::first_;
     line_.take(&part.line_.gaps[Part::first_], Part::first_, &gaps.lag(Part::first_), held);
-    line_.leave_alone(0, line_.index(part.inner_first_));
-    line_.leave_alone(line_.index(part.inner_last_) - 1, static_cast<std::ptrdiff_t>(held));
-    leave_edges_alone();
+    line_.mark(0, line_.index(part.inner_first_), StepLine::edge);
+    line_.mark(line_.index(part.inner_last_) - 1, static_cast<std::ptrdiff_t>(held), StepLine::edge);
+    mark_edges();
     StepResult inner;
     const bool done = steps.run(line_, task, *this, report.pace, inner);
     report.pace.made(done);
@@ -68,16 +68,14 @@ requires(!Law::bounces_only && requires(const Law& law) {
     double last = -StepLine::never;
   };
 
-  // Of those near an edge or a vacant cell: the distance at which collisions of one pass are kept (steps.cpp), and one
-  // more for the particle beyond the gap on the right.
-  static constexpr std::ptrdiff_t near = 9;
+  // How far on either side decisions in steps look for other gaps (steps.cpp).
+  static constexpr std::ptrdiff_t near = 8;
 
   // The gaps at cuts, fronts and the seam, wherever they are now.
-  void leave_edges_alone() {
-    for (const Slot at : {part_->inner_first_, part_->inner_last_, part_->seam_}) {
-      if (at < Part::first_) continue;  // there is no seam
-      line_.leave_alone(line_.index(part_->left(at)), line_.index(at));
-    }
+  void mark_edges() {
+    for (const Slot at : {part_->inner_first_, part_->inner_last_, part_->seam_})
+      for (const Slot s : {at, at < Part::first_ ? at : part_->left(at)})
+        if (is_held(s)) line_.special[s - Part::first_] = StepLine::edge;
   }
 
   // The event loop's collision, where all that is not plain is refused. Lags stay as they are, and are dropped when all
@@ -103,8 +101,8 @@ requires(!Law::bounces_only && requires(const Law& law) {
       if (is_held(touched[k])) line_.due[line_.index(touched[k])] = cells.gaps[touched[k]].due;
     }
     const bool merges = outcome.event == Event::merge;
-    if (merges) line_.leave_alone(line_.index(n) - near, line_.index(n) + near);
-    leave_edges_alone();
+    if (merges) line_.mark(line_.index(n) - near, line_.index(n) + near, StepLine::near_vacant);
+    mark_edges();
     if (!own) return true;
     ++made_.counts.collisions;
     made_.counts.merges += merges;

@@ -133,12 +133,12 @@ template <Real T> class ClusterChain : public ClusterPlaces<T> {
   }
   // Replaces the cells by those of a held range, and enters the mass that crossed the seam, collision by collision.
   void continue_with(typename Line::Gaps& after, std::vector<CellsInARow> cells, const std::vector<T>& carried,
-                     const ClusterFront& left, const ClusterFront& right) {
+                     const ClusterFront& on_left, const ClusterFront& on_right) {
     line_.gaps.swap_gaps(after);
     std::sort(cells.begin(), cells.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
     std::size_t held = 0;
     Slot before = cells.back().first + cells.back().count - 1;
-    range_.take_in(left.taken, right.taken);
+    range_.take_in(on_left.taken, on_right.taken);
     range_.hold(cells.front().first, before);
     for (const auto& [slot, count] : cells) {
       line_.link(before, slot);
@@ -149,11 +149,12 @@ template <Real T> class ClusterChain : public ClusterPlaces<T> {
     active_ = static_cast<ParticleIndex>(held);
     for (const T& mass : carried) carried_.add(mass);
     if (on_ring()) return;
-    range_.place_fronts(left.slot, right.slot);
-    active_ -= static_cast<ParticleIndex>((left.slot - first()) + (last() - right.slot));
+    range_.place_fronts(on_left.slot, on_right.slot);
+    active_ -= static_cast<ParticleIndex>((on_left.slot - first()) + (last() - on_right.slot));
     line_.place_end(first() - 1, first());
     line_.place_end(last() + 1, last());
-    if (last() > right.slot) line_.gaps.start(last(), T(1), T(0));  // its gap is that at the start until it is reached
+    if (last() > on_right.slot)
+      line_.gaps.start(last(), T(1), T(0));  // its gap is that at the start until it is reached
     find_centre();
   }
 

@@ -56,7 +56,7 @@ struct Cells {
   HWY_INLINE void put_at(const Places4& places, std::ptrdiff_t side, double* due_there) const {
     double* const* cell = places.cell;
     put_at(cell[0] + 4 * side, cell[1] + 4 * side, cell[2] + 4 * side, cell[3] + 4 * side);
-    for (int k = 0; k < 4; ++k) due_there[places.i[k] + side] = due[planted(3) ? 0 : k];
+    for (int k = 0; k < 4; ++k) due_there[places.i[k] + static_cast<std::size_t>(side)] = due[planted(3) ? 0 : k];
   }
   HWY_INLINE void put_at(double* first, double* second, double* third, double* fourth) const {
     const Four a = __builtin_shufflevector(gap, time, 0, 4, 2, 6), b = __builtin_shufflevector(gap, time, 1, 5, 3, 7),

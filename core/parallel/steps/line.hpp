@@ -57,10 +57,10 @@ class StepLine {
   enum Special : std::uint8_t { none, near_vacant, edge };
   std::vector<Special> special;
   void mark(std::ptrdiff_t from, std::ptrdiff_t to, Special as) {
-    const auto first = std::max<std::ptrdiff_t>(from, 0),
+    const auto begin = std::max<std::ptrdiff_t>(from, 0),
                end = std::min<std::ptrdiff_t>(to + 1, static_cast<std::ptrdiff_t>(gaps_));
     Special* const all = special.data();
-    for (std::ptrdiff_t i = first; i < end; ++i) all[i] = std::max(all[i], as);
+    for (std::ptrdiff_t i = begin; i < end; ++i) all[i] = std::max(all[i], as);
   }
 
   // A step may leave a few gaps that are due to the next one. Those that are due up to `listed_to` are the first `left`
@@ -83,8 +83,8 @@ class StepLine {
     cells = first_cell, clusters = nullptr;
     take(&first_cell->gap, sizeof(Gap<double>), first_lag, gaps);
   }
-  void take(Cell<double>* first_cell, Slot first, const double* first_lag, std::size_t gaps) {
-    cells = nullptr, clusters = first_cell, slot_of_first = first;
+  void take(Cell<double>* first_cell, Slot slot, const double* first_lag, std::size_t gaps) {
+    cells = nullptr, clusters = first_cell, slot_of_first = slot;
     special.assign(gaps, none);
     take(&first_cell->gap, sizeof(Cell<double>), first_lag, gaps);
   }

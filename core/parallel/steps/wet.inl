@@ -29,7 +29,9 @@ struct Cells4 {
     for (int k = 0; k < 4; ++k) i[k] = four[k], cell[k] = l.numbers + width * i[k];
   }
   HWY_INLINE Cells4(const Cells4& from, std::ptrdiff_t side) {
-    for (int k = 0; k < 4; ++k) i[k] = from.i[k] + side, cell[k] = from.cell[k] + width * side;
+    for (int k = 0; k < 4; ++k)
+      i[k] = from.i[k] + static_cast<std::size_t>(side),
+      cell[k] = from.cell[k] + static_cast<std::ptrdiff_t>(width) * side;
   }
   HWY_INLINE Cells4(const StepLine& line, const Cells4& from, Slot Cell<double>::*link) {
     for (int k = 0; k < 4; ++k) {

@@ -50,7 +50,7 @@ template <unsigned threads> std::uint64_t run_cradle(const ParticlesPointer& par
       engine.advance(until);
     } else {
       const cradle::TbbExecutor executor(threads);
-      cradle::Segments<Law, Chain> segments(cradle::workers(executor));
+      cradle::Segments<Law, Chain> segments(cradle::workers(executor), {.steps = cradle::fastest_steps()});
       engine.advance(until, segments);
     }
     return engine.counts().collisions;
@@ -93,19 +93,18 @@ void enter(const std::string& of, const Measured& measured, const ParticlesPoint
 int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
-  enter("wet/fig6", plain, rows<double>(50'000), 1e-4, 12000, 12153997);
-  enter("wet/fig6", conventional, rows<double>(50'000), 1e-4, 12000, 12153997);
-  enter("wet/fig11", plain, rows<double>(20'000'000), 0.05, 1.9e7, 57079264);
+  for (const Measured& engine : {plain, in_segments, on_two_threads, conventional})
+    enter("wet/fig6", engine, rows<double>(50'000), 1e-4, 12000, 12153997);
+  for (const Measured& engine : {plain, in_segments})
+    enter("wet/fig11", engine, rows<double>(20'000'000), 0.05, 1.9e7, 57079264);
   enter("wet/fig11_begin", plain, rows<double>(110'000), 0.05, 1e5);
   enter("wet/fig11_begin", conventional, rows<double>(110'000), 0.05, 1e5);
   for (const cradle::ParticleIndex n : {10'000, 100'000, 1'000'000}) {
     const ParticlesPointer particles = ring(n);
     for (const double loss : {-1.0, 0.1}) {
       const std::string of = (loss < 0 ? "sticky/cooling/" : "wet/cooling/") + std::to_string(n);
-      enter(of, plain, particles, loss, 1000);
-      enter(of, in_segments, particles, loss, 1000);
-      enter(of, on_two_threads, particles, loss, 1000);
-      enter(of, conventional, particles, loss, 1000);
+      for (const Measured& engine : {plain, in_segments, on_two_threads, conventional})
+        enter(of, engine, particles, loss, 1000);
     }
   }
   benchmark::RunSpecifiedBenchmarks();

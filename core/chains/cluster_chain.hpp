@@ -29,6 +29,12 @@ struct CellsInARow {
   std::size_t count;
 };
 
+// A front after a held range: its slot, and how many particles of the row beyond it have been taken in.
+struct ClusterFront {
+  Slot slot = 0;
+  ParticleIndex taken = 0;
+};
+
 template <Real T> class ClusterChain : public ClusterPlaces<T> {
   using Places = ClusterPlaces<T>;
 
@@ -117,23 +123,39 @@ template <Real T> class ClusterChain : public ClusterPlaces<T> {
                   "ends");
   }
 
-  // ---- for segments (segments.hpp), of a ring
-  bool cramped(std::size_t) const { return sparse(); }
-  bool fronts_are_within(Slot, Slot) const { return on_ring(); }
+  // ---- for segments (segments.hpp)
+  bool cramped(std::size_t particles) const {
+    return sparse() || range_.cramped(slots(), static_cast<ParticleIndex>(particles));
+  }
+  // The particle that continues the row at an end, as at the start, with the gap behind it if there is one.
+  Cell<T> undisturbed_cell(ParticleIndex b) const {
+    return load(b, this->local_time(this->start()), b + 1 < particles_->count());
+  }
   // Replaces the cells by those of a held range, and enters the mass that crossed the seam, collision by collision.
-  void continue_with(typename Line::Gaps& after, std::vector<CellsInARow> cells, const std::vector<T>& carried) {
+  void continue_with(typename Line::Gaps& after, std::vector<CellsInARow> cells, const std::vector<T>& carried,
+                     const ClusterFront& on_left, const ClusterFront& on_right) {
     line_.gaps.swap_gaps(after);
     std::sort(cells.begin(), cells.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-    active_ = 0;
+    std::size_t held = 0;
     Slot before = cells.back().first + cells.back().count - 1;
+    range_.take_in(on_left.taken, on_right.taken);
     range_.hold(cells.front().first, before);
     for (const auto& [slot, count] : cells) {
       line_.link(before, slot);
       before = slot + count - 1;
-      active_ += static_cast<ParticleIndex>(count);
+      held += count;
     }
-    vacated_ = last() + 1 - first() - static_cast<std::size_t>(active_);
+    vacated_ = last() + 1 - first() - held;
+    active_ = static_cast<ParticleIndex>(held);
     for (const T& mass : carried) carried_.add(mass);
+    if (on_ring()) return;
+    range_.place_fronts(on_left.slot, on_right.slot);
+    active_ -= static_cast<ParticleIndex>((on_left.slot - first()) + (last() - on_right.slot));
+    line_.place_end(first() - 1, first());
+    line_.place_end(last() + 1, last());
+    if (last() > on_right.slot)
+      line_.gaps.start(last(), T(1), T(0));  // its gap is that at the start until it is reached
+    find_centre();
   }
 
  private:
@@ -155,8 +177,7 @@ template <Real T> class ClusterChain : public ClusterPlaces<T> {
   // A cell as at the start. The gap right of the last held particle is not computed: it would draw random numbers in
   // vain.
   Cell<T> load(ParticleIndex b, const T& time, bool with_gap) const {
-    return {
-        {with_gap ? particles_->gap(b) : T(1), time}, particles_->velocity(b) - frame_, particles_->mass(b), 0, 0, b};
+    return {{with_gap ? particles_->gap(b) : T(1), time}, particles_->velocity(b) - frame_, particles_->mass(b), b};
   }
 
   // Changes to enough slots for the zone to grow by half on either side, with the cells at `kept`.
@@ -206,9 +227,13 @@ template <Real T> class ClusterChain : public ClusterPlaces<T> {
       line_.link(n, last());
       line_.place_end(last() + 1, last());
     }
+    find_centre();
+    return range_.cramped(slots()) || sparse() ? Notice::needs_slots : Notice::none;
+  }
+
+  void find_centre() {
     const bool all_collided = range_.front_left() == first() && range_.front_right() == last();
     if (all_collided && !centre_) centre_ = particles_->centre_of_mass();
-    return range_.cramped(slots()) || sparse() ? Notice::needs_slots : Notice::none;
   }
 
   // Records the mass that passes from the first cell of a ring to the last one, which is one turn to the right.

@@ -6,6 +6,7 @@
 // becomes of cells where particles merge or pass. When two merge, the result stays in the left one's cell, and the
 // right one's is vacant until the chain is laid out anew.
 
+#include <concepts>
 #include <tuple>
 #include <utility>
 
@@ -15,10 +16,11 @@
 
 namespace cradle {
 
-template <Real T> struct Cell : TimedGap<T> {
+// In double a line of the cache.
+template <Real T> struct alignas(std::same_as<T, double> ? 64 : alignof(T)) Cell : TimedGap<T> {
   T velocity{0}, mass{1};
-  Slot left = 0, right = 0;
   ParticleIndex particle = 0;  // initial number of the heaviest particle, which names the cluster
+  Slot left = 0, right = 0;
 
   static auto state(auto& self) {
     return std::tuple_cat(TimedGap<T>::state(self),
@@ -54,7 +56,7 @@ template <Real T> class ClusterLine {
   // a slot -1.)
   [[gnu::noinline]] void place_end(Slot s, Slot beside) {
     const bool on_left = s < beside;
-    gaps.put(s, {{}, on_left ? T(-runaway_) : runaway_, T(1), on_left ? s : beside, on_left ? beside : s, 0});
+    gaps.put(s, {{}, on_left ? T(-runaway_) : runaway_, T(1), 0, on_left ? s : beside, on_left ? beside : s});
     (on_left ? gaps[beside].left : gaps[beside].right) = s;
   }
   // Whether the data can be those of a particle and the gap behind it (for the last one of a line a gap that never

@@ -132,8 +132,12 @@ template <Real T> class ClusterPlaces {
     return c;
   }
 
-  // ---- for segments (segments.hpp), of a ring
+  // ---- for segments (segments.hpp)
   const Line& line() const { return line_; }
+  const HeldRange& range() const { return range_; }
+  bool fronts_are_within(Slot left, Slot right) const {
+    return on_ring() || (range_.has_fronts() && range_.front_left() <= left && range_.front_right() >= right);
+  }
   void lose(const Ledger<T>& elsewhere) { line_.gaps.lose(elsewhere); }
   ParticleIndex place(Slot s) const { return static_cast<ParticleIndex>(s); }
 

@@ -90,6 +90,9 @@ class HeldRange {
     ++last_;
     return count - unheld_right_--;
   }
+  // After a held range (segments.hpp): so many have been taken in, and the fronts are there.
+  void take_in(ParticleIndex left, ParticleIndex right) { unheld_left_ -= left, unheld_right_ -= right; }
+  void place_fronts(Slot left, Slot right) { front_left_ = left, front_right_ = right; }
   // The particle at `gone` becomes part of the one at `s` on its left; `next` is on its right.
   void merge(Slot s, Slot gone, Slot next) {
     if (last_ == gone) last_ = s;

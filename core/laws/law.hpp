@@ -265,6 +265,12 @@ template <Real T> class Wet {
     return {-after, impulse / masses.left, impulse / masses.right, loss_, false, Event::pass};
   }
 
+  // The law's numbers as they are used in computing.
+  const T& loss() const { return loss_; }
+  const T& twice_loss() const { return twice_loss_; }
+  const T& below() const { return below_; }
+  const T& above() const { return above_; }
+
  private:
   T loss_, twice_loss_;
   T below_, above_;  // w_c times 0.999 and 1.001

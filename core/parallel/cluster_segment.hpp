@@ -1,5 +1,5 @@
 #pragma once
-// A segment's part of the chain in gaps and particle velocities, on a ring (segments.hpp). A collision at the gap
+// A segment's part of the chain in gaps and particle velocities (segments.hpp). A collision at the gap
 // behind the particle l reads and changes that gap, the gaps on either side of it, and the particles l and r beside it.
 // A cut is at a particle, the one on the right of the last gap before the cut. Both sides know this particle's velocity
 // as long as they know the collisions at the two gaps beside it. These collisions are logged: the gap, the exact time,
@@ -12,11 +12,12 @@
 // a collision like others. A segment whose last cell is absorbed from the left owns nothing any more: it is joined with
 // its neighbours.
 //
-// If positions are counted from the first cell, mass that crosses the seam is recorded in the order in which it
-// crosses. If two segments have such collisions in one time slab, the plain loop computes the slab.
+// On a ring, where positions are counted from the first cell, mass that crosses the seam is recorded in the order in
+// which it crosses. If two segments have such collisions in one time slab, the plain loop computes the slab.
 
 #include <algorithm>
 #include <cstddef>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -48,8 +49,9 @@ template <Real T> class ClusterSegment {
     ParticleIndex left, right;
   };
   struct Report : SegmentReport<T, ClusterCollision<T>, Observed> {
-    std::vector<CellsInARow> cells;  // of the segment's own that there are still, in `after`
-    std::vector<T> carried;          // mass across the seam
+    std::vector<CellsInARow> cells;        // of the segment's own that there are still, in `after`
+    std::vector<T> carried;                // mass across the seam
+    ClusterFront left_front, right_front;  // at the ends of a line
   };
 
   explicit ClusterSegment(const Chain& chain) : line_(chain.line(), 0) {}
@@ -63,6 +65,7 @@ template <Real T> class ClusterSegment {
   double queue_key(Slot s) { return line_.gaps.queue_key(s, line_.closing(s)); }
   double queue_time(const T& local) const { return line_.gaps.queue_time(local); }
   bool across_seam() const { return seam_ > 0; }
+  static constexpr bool is_ring() { return false; }  // a whole one has no segment
   void lose(Slot s, const T& energy) { line_.gaps.lose(s, energy); }
   // The collision at a gap of the segment's own, before it is made.
   Observed observed(Slot s, const T& time) const {
@@ -77,53 +80,78 @@ template <Real T> class ClusterSegment {
   bool take(const Chain& chain, const OwnedGaps& own, std::size_t ghosts, Report& report) {
     report.cells.clear(), report.carried.clear();
     const auto& cells = chain.line();
-    Slot there = own.first;
+    const HeldRange& range = chain.range();
+    const bool ring = chain.on_ring();
+    left_end_ = !ring && own.first == chain.first();
+    right_end_ = !ring && own.first + own.gaps > chain.last();
+    Slot from = own.first, to = from;
     std::size_t held = 0;
     each_slot(chain, own, [&](Slot s) {
       if (cells.vacant(s)) return;
-      if (held++ == 0) there = s;
+      to = s;
+      if (held++ == 0) from = s;
     });
     const auto others = static_cast<std::size_t>(chain.collided_particles()) - held;
     report.nothing_left = held == 0;
-    report.plain = others < 2;
+    report.plain = ring && others < 2;
     if (report.nothing_left || report.plain) return false;
     // No particle is held twice.
-    const std::size_t beside = std::min(ghosts, others / 2);
-    own_first_ = first_ + beside;
-    own_last_ = own_first_ + held - 1;
-    last_ = own_last_ + beside;
+    const std::size_t most = ring ? std::min(ghosts, others / 2) : ghosts;
+    std::size_t before = 0, behind = 0;
+    for (; before < most && (ring || from != chain.first()); ++before) from = cells.left(from);
+    for (; behind < most && (ring || to != chain.last()); ++behind) to = cells.right(to);
+    // At the end of a row particles are taken along that the front may reach.
+    along_left_ = left_end_ ? std::min(ghosts, range.free_left()) : 0;
+    along_right_ = right_end_ ? std::min(ghosts, range.free_right(chain.slots())) : 0;
+    own_first_ = first_ + before;
+    own_last_ = first_ + along_left_ + before + held - 1 + along_right_;
+    last_ = own_last_ + behind;
     seam_ = 0;
+    more_left_ = range.unheld_left() > static_cast<ParticleIndex>(along_left_);
+    more_right_ = range.unheld_right() > static_cast<ParticleIndex>(along_right_);
     line_.gaps.resemble(cells.gaps, last_ + 3);
     if (report.observe) place_.resize(last_ + 1);
-    for (std::size_t k = 0; k < beside; ++k) there = cells.left(there);
-    for (Slot s = first_; s <= last_; ++s, there = cells.right(there)) {
-      line_.gaps.copy(cells.gaps, there, s, 1);
-      if (report.observe) place_[s] = chain.place(there);
-      line_.link(s - 1, s);
-      if (cells.right(there) <= there && s < last_) seam_ = s;
+    for (Slot s = first_ + along_left_; s <= last_ - along_right_; ++s, from = cells.right(from)) {
+      line_.gaps.copy(cells.gaps, from, s, 1);
+      if (report.observe) place_[s] = chain.place(from);
+      if (ring && cells.right(from) <= from && s < last_) seam_ = s;
+      if (from == range.front_left()) reached_left_ = s;
+      if (from == range.front_right()) reached_right_ = s;
     }
+    farthest_ = reached_right_;
+    take_along(chain, report.observe);
+    for (Slot s = first_; s <= last_; ++s) line_.link(s - 1, s);
     line_.place_end(first_ - 1, first_);
     line_.place_end(last_ + 1, last_);
     line_.gaps.forget(last_);
+    set_inner();
     return true;
   }
 
   template <class Law>
   [[gnu::always_inline]] OwnedResult<T> collide(const Law& law, Slot s, const T& time, Report& report) {
     const Outcome<T> outcome = law(line_.closing(s), line_.masses(s));
-    bool own = true;
+    Edge edge;
     const Slot n = right(s);
-    if (!((s > own_first_) & (n < own_last_) & (s != seam_) & (n != seam_))) [[unlikely]]
-      own = at_edge(s, time, outcome, report);
-    return {line_.strike(s, time, outcome, Notice::none), own};
+    if (!((s > inner_first_) & (n < inner_last_) & (s != seam_) & (n != seam_))) [[unlikely]]
+      edge = at_edge(s, time, outcome, report);
+    return {line_.strike(s, time, outcome, edge.notice), edge.own};
   }
 
   // Puts the segment's own cells into `after`, from its first slot on, and from the chain's first one behind the seam.
+  // At the end of a row the particles that the front has reached are its own too, and the next one.
   void give(const Chain& chain, const OwnedGaps& own, Gaps& after, Report& report) const {
     report.lost = line_.gaps.ledger();
+    const Slot begin = first_ + along_left_, end = last_ - along_right_;  // of what has not been taken along
+    Slot s = own_first_, last = own_last_;
+    if (left_end_) s = std::min(std::max(left(reached_left_), first_), line_.vacant(begin) ? last : begin);
+    if (right_end_) last = std::max(std::min(right(reached_right_), own_last_), line_.vacant(end) ? s : end);
+    report.left_front.taken = left_end_ ? static_cast<ParticleIndex>(begin - s) : 0;
+    report.right_front.taken =
+        static_cast<ParticleIndex>(right_end_ ? std::max(std::min(farthest_ + 1, last_), end) - end : 0);
     // The seam may have been taken over by what is left of it.
     const bool behind_seam = own.first + own.gaps > chain.last() + 1 && seam_ < own_first_;
-    Slot s = own_first_, there = behind_seam ? chain.first() : own.first, row = there;
+    Slot there = behind_seam ? chain.first() : own.first - static_cast<Slot>(report.left_front.taken), row = there;
     const auto end_row = [&] {
       if (there > row) report.cells.push_back({row, there - row});
     };
@@ -131,15 +159,17 @@ template <Real T> class ClusterSegment {
       after.copy(line_.gaps, s, there, 1);
       after[there].left = there - 1;
       after[there].right = there + 1;
+      if (s == reached_left_) report.left_front.slot = there;
+      if (s == reached_right_) report.right_front.slot = there;
       ++there;
-      more = s != own_last_;
+      more = s != last;
       if (s == seam_ && more) end_row(), row = there = chain.first();
     }
     end_row();
     each_slot(chain, own, [&](Slot slot) {
       for (const auto& [first, count] : report.cells)
         if (slot - first < count) return;
-      after.put(slot, {{}, T(0), T(1), slot, slot, 0});
+      after.put(slot, {{}, T(0), T(1), 0, slot, slot});
     });
   }
 
@@ -154,12 +184,16 @@ template <Real T> class ClusterSegment {
       cells.insert(cells.end(), report.cells.begin(), report.cells.end());
       if (carried.empty()) carried = report.carried;
     }
-    chain.continue_with(after, std::move(cells), carried);
+    chain.continue_with(after, std::move(cells), carried, reports.front().left_front, reports.back().right_front);
   }
 
  private:
   using Collision = ClusterCollision<T>;
   static constexpr Slot first_ = 2;
+  struct Edge {
+    bool own = true;
+    Notice notice = Notice::none;
+  };
 
   template <class Visit> static void each_slot(const Chain& chain, const OwnedGaps& own, Visit visit) {
     Slot s = own.first;
@@ -171,20 +205,53 @@ template <Real T> class ClusterSegment {
     return {cell.velocity, cell.mass, cell.particle};
   }
 
-  // Handles a collision that may be at a cut or the seam, or beyond, and says whether it is the segment's own. Follows
-  // the cuts and the seam where particles merge.
-  [[gnu::noinline]] bool at_edge(Slot s, const T& time, const Outcome<T>& outcome, Report& report) {
+  // The particles beyond both ends of a row, with the gaps between them.
+  void take_along(const Chain& chain, bool observe) {
+    const HeldRange& range = chain.range();
+    const Slot begin = first_ + along_left_, end = last_ - along_right_;
+    const auto place = [&](Slot s, Slot beside) {
+      if (observe) place_[s] = place_[beside] + (s < beside ? -1 : 1);
+    };
+    ParticleIndex b = range.unheld_left();
+    for (Slot s = begin; s-- > first_; place(s, s + 1)) line_.gaps.put(s, chain.undisturbed_cell(--b));
+    b = chain.count() - range.unheld_right();
+    for (Slot s = end + 1; s <= last_; ++s, ++b) {
+      line_.gaps.put(s, chain.undisturbed_cell(b));
+      place(s, s - 1);
+    }
+    if (last_ == end || along_right_ == 0) return;
+    const Cell<T> at_end = chain.undisturbed_cell(chain.count() - range.unheld_right() - 1);
+    line_.gaps.start(end, at_end.gap, at_end.time);
+  }
+  void set_inner() {
+    inner_first_ = left_end_ ? reached_left_ : own_first_;
+    inner_last_ = right_end_ ? reached_right_ : own_last_;
+  }
+
+  // Handles a collision that may be at a cut, a front or the seam, or beyond, and says whether it is the segment's own.
+  // Follows the cuts, the fronts and the seam where particles merge.
+  [[gnu::noinline]] Edge at_edge(Slot s, const T& time, const Outcome<T>& outcome, Report& report) {
     const Slot n = right(s);
     const bool merge = outcome.event == Event::merge;
     const bool own = s >= own_first_ && s <= own_last_;
+    Notice notice = Notice::none;
     const auto enter = [&](std::vector<Collision>& log, bool behind) {
       log.push_back({behind, time, what(s), what(n)});
       if (!merge || behind) return;
       const Cell<T>& next = line_.gaps[n];
       log.push_back({true, time, what(n), what(right(n)), next.gap, next.time, line_.gaps.lag(n), line_.gaps.lost(n)});
     };
-    if (n == own_first_ || s == own_first_) enter(report.left, s == own_first_);
-    if (s == own_last_ || left(s) == own_last_) enter(report.right, s != own_last_);
+    if (!left_end_ && (n == own_first_ || s == own_first_)) enter(report.left, s == own_first_);
+    if (!right_end_ && (s == own_last_ || left(s) == own_last_)) enter(report.right, s != own_last_);
+    if (left_end_ && s <= reached_left_) {
+      reached_left_ = s;
+      if (s == first_ && more_left_) notice = Notice::needs_slots;
+    }
+    if (right_end_ && n >= reached_right_) {
+      farthest_ = std::max(farthest_, n);
+      reached_right_ = merge ? s : n;
+      if (n == last_ && more_right_) notice = Notice::needs_slots;
+    }
     if (own && s == seam_ && outcome.event != Event::bounce) {
       report.carried.push_back(line_.gaps[n].mass);
       if (outcome.event == Event::pass) report.carried.push_back(T(-line_.gaps[s].mass));
@@ -195,13 +262,25 @@ template <Real T> class ClusterSegment {
       if (n == own_last_) own_last_ = s;
       if (n == seam_) seam_ = s;
     }
-    return own;
+    set_inner();
+    return {own, notice};
   }
+
+  // ---- for steps (steps/stepped_clusters.hpp)
+  template <class Law, class Part> friend struct Stepped;
+  // What collisions at edges change.
+  auto edges() { return std::tie(own_first_, own_last_, reached_left_, reached_right_, farthest_, seam_); }
 
   ClusterLine<T> line_;
   std::vector<ParticleIndex> place_;  // in the chain, of slots here, for observers
   Slot own_first_ = 0, own_last_ = 0, last_ = 0;
-  Slot seam_ = 0;  // the last cell of the chain, if it is here and the first one too
+  bool left_end_ = false, right_end_ = false;     // whether the line ends here
+  std::size_t along_left_ = 0, along_right_ = 0;  // particles of rows that have been taken along
+  bool more_left_ = false, more_right_ = false;   // whether there are more of them
+  Slot farthest_ = 0;                             // the slot farthest right that has had a collision
+  Slot reached_left_ = 0, reached_right_ = 0;     // fronts
+  Slot inner_first_ = 0, inner_last_ = 0;         // a collision between them concerns no cut and no front
+  Slot seam_ = 0;                                 // the last cell of the chain, if it is here and the first one too
 };
 
 template <Real T> struct PartOf<ClusterChain<T>> { using Type = ClusterSegment<T>; };

@@ -42,6 +42,7 @@
 #include "cradle/core/parallel/cluster_segment.hpp"
 #include "cradle/core/parallel/gap_segment.hpp"
 #include "cradle/core/parallel/steps/stepped.hpp"
+#include "cradle/core/parallel/steps/stepped_clusters.hpp"
 #include "cradle/core/parallel/workers.hpp"
 
 namespace cradle {

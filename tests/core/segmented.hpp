@@ -118,6 +118,21 @@ template <class T> class Observed {
   std::uint64_t collisions_ = 0, hash_ = 0;
 };
 
+// Of particles that may merge: every number of every cell but the gap behind the last one of a line, which is none.
+template <class T> void expect_same_bits(const ClusterChain<T>& a, const ClusterChain<T>& b) {
+  const auto &left = a.line().gaps, &right = b.line().gaps;
+  for (Slot s = a.first(), r = b.first();; s = a.right(s), r = b.right(r)) {
+    const auto& [one, other] = std::pair(left[s], right[r]);
+    ASSERT_EQ(one.particle, other.particle);
+    ASSERT_TRUE(one.velocity == other.velocity && one.mass == other.mass) << one.particle;
+    ASSERT_EQ(s == a.last(), r == b.last());
+    if (s == a.last() && !a.on_ring()) break;
+    ASSERT_TRUE(one.gap == other.gap && one.time == other.time && left.lag(s) == right.lag(r)) << one.particle;
+    ASSERT_EQ(a.due(s), b.due(r)) << one.particle;
+    if (s == a.last()) break;
+  }
+}
+
 struct SameState {
   template <class Run, class T> void operator()(const Run& a, const Run& b, const T& time) const {
     expect_same_state(a, b, time);

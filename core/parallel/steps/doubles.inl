@@ -30,38 +30,43 @@ HWY_INLINE unsigned bits_up_to(const Four& x, double last) {
 // Where the gaps of four collisions are.
 struct Places4 {
   std::size_t i[4];
-  Gap<double>* cell[4];
+  double* cell[4];
   HWY_INLINE Places4(const Local& l, const std::uint32_t* four) {
-    for (int k = 0; k < 4; ++k) i[k] = four[k], cell[k] = l.cells + i[k];
+    for (int k = 0; k < 4; ++k) i[k] = four[k], cell[k] = l.numbers + 4 * i[k];
   }
   HWY_INLINE Four of(const double* array) const { return Four{array[i[0]], array[i[1]], array[i[2]], array[i[3]]}; }
 };
 
 // Four gaps: those of the collisions (side 0), or the ones left (-1) or right of them. A gap lies in memory as gap,
-// local time, time of collision and closing speed; here it is a column.
+// local time, time of collision and closing speed (of clusters the particle's velocity); here it is a column.
 struct Cells {
   Four gap, time, due, closing;
 
   static HWY_INLINE Cells at(const Places4& places, std::ptrdiff_t side) {
-    const Four a = fetch(&places.cell[0][side].gap), b = fetch(&places.cell[1][side].gap),
-               c = fetch(&places.cell[2][side].gap), d = fetch(&places.cell[3][side].gap);
+    double* const* cell = places.cell;
+    return at(cell[0] + 4 * side, cell[1] + 4 * side, cell[2] + 4 * side, cell[3] + 4 * side);
+  }
+  static HWY_INLINE Cells at(const double* first, const double* second, const double* third, const double* fourth) {
+    const Four a = fetch(first), b = fetch(second), c = fetch(third), d = fetch(fourth);
     const Four ab = __builtin_shufflevector(a, b, 0, 4, 2, 6), cd = __builtin_shufflevector(c, d, 0, 4, 2, 6),
                more_ab = __builtin_shufflevector(a, b, 1, 5, 3, 7), more_cd = __builtin_shufflevector(c, d, 1, 5, 3, 7);
     return {__builtin_shufflevector(ab, cd, 0, 1, 4, 5), __builtin_shufflevector(more_ab, more_cd, 0, 1, 4, 5),
             __builtin_shufflevector(ab, cd, 2, 3, 6, 7), __builtin_shufflevector(more_ab, more_cd, 2, 3, 6, 7)};
   }
   HWY_INLINE void put_at(const Places4& places, std::ptrdiff_t side, double* due_there) const {
+    double* const* cell = places.cell;
+    put_at(cell[0] + 4 * side, cell[1] + 4 * side, cell[2] + 4 * side, cell[3] + 4 * side);
+    for (int k = 0; k < 4; ++k) due_there[places.i[k] + static_cast<std::size_t>(side)] = due[planted(3) ? 0 : k];
+  }
+  HWY_INLINE void put_at(double* first, double* second, double* third, double* fourth) const {
     const Four a = __builtin_shufflevector(gap, time, 0, 4, 2, 6), b = __builtin_shufflevector(gap, time, 1, 5, 3, 7),
                c = __builtin_shufflevector(due, closing, 0, 4, 2, 6),
                d = __builtin_shufflevector(due, closing, 1, 5, 3, 7);
-    put(__builtin_shufflevector(a, c, 0, 1, 4, 5), &places.cell[0][side].gap);
-    put(__builtin_shufflevector(b, d, 0, 1, 4, 5), &places.cell[1][side].gap);
-    put(__builtin_shufflevector(a, c, 2, 3, 6, 7), &places.cell[2][side].gap);
-    put(__builtin_shufflevector(b, d, 2, 3, 6, 7), &places.cell[3][side].gap);
-    for (int k = 0; k < 4; ++k) due_there[places.i[k] + side] = due[planted(3) ? 0 : k];
+    put(__builtin_shufflevector(a, c, 0, 1, 4, 5), first), put(__builtin_shufflevector(b, d, 0, 1, 4, 5), second);
+    put(__builtin_shufflevector(a, c, 2, 3, 6, 7), third), put(__builtin_shufflevector(b, d, 2, 3, 6, 7), fourth);
   }
 };
-static_assert(sizeof(Gap<double>) == sizeof(Four));
+static_assert(sizeof(Gap<double>) == sizeof(Four) && sizeof(Cell<double>) == 2 * sizeof(Four));
 
 // What is known of all collisions of a step.
 struct Totals {
@@ -113,12 +118,14 @@ HWY_INLINE void follow(Local& l, const std::uint32_t* four, unsigned left_soon, 
 }
 
 // Repeats the last collision of a pass, so that there are four to the end.
+HWY_INLINE void fill_up(std::uint32_t* first, std::size_t count) {
+  for (std::size_t k = count; k > 0 && k < count + 3; ++k) first[k] = first[k - 1];
+}
 HWY_INLINE void fill_up(StepLine& line, const Local& l, bool with_outcomes) {
-  for (std::size_t k = l.firsts; k > 0 && k < l.firsts + 3; ++k) {
-    l.first[k] = l.first[k - 1];
-    if (!with_outcomes) continue;
+  fill_up(l.first, l.firsts);
+  if (!with_outcomes) return;
+  for (std::size_t k = l.firsts; k > 0 && k < l.firsts + 3; ++k)
     line.after[k] = line.after[k - 1], line.to_left[k] = line.to_left[k - 1], line.to_right[k] = line.to_right[k - 1];
-  }
 }
 
 // Makes four collisions of a pass from number k on; the last ones may be one and the same. They are so far apart that
@@ -192,6 +199,7 @@ HWY_INLINE void enter(const StepLine& line, const Local& l, const StepTask& task
 
 // The collisions of a step, where numbers are doubles.
 template <StepLaw law, bool unequal> struct Doubles {
+  static constexpr bool linked = false;
   Totals made;
 
   HWY_INLINE Doubles(const StepTask&, const StepResult& before) : made{.latest = all(before.last)} {}

@@ -60,6 +60,7 @@ constexpr std::size_t few = hn::MaxLanes(Few());
 
 // The collisions of a step, where numbers are sums of two doubles.
 template <StepLaw law, bool unequal> struct Pairs {
+  static constexpr bool linked = false;
   Pair<Few> latest;       // times of the last ones
   hn::Mask<Few> orderly;  // all of them came after the last ones at their gaps, and are not for the event loop
   hn::Vec<Few> floor;

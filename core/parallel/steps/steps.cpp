@@ -55,18 +55,21 @@ HWY_INLINE void append(unsigned set, std::size_t base, std::uint32_t* list, std:
 // The arrays and lists of a line, where the compiler keeps them in registers.
 struct Local {
   explicit HWY_INLINE Local(StepLine& line)
-      : cells(line.cells), lag(line.lag), due(line.due), bound(line.bound), fraction(line.fraction),
-        reduced(line.reduced), struck(line.struck.data()), struck_mass(line.struck_mass.data()),
-        inner_first(line.inner_first), inner(line.inner), around(line.ring ? line.gaps() : 0),
-        candidates(line.candidates.data()), waiting(line.waiting.data()), first(line.first.data()),
+      : cells(line.cells), numbers(line.numbers), lag(line.lag), due(line.due), bound(line.bound),
+        fraction(line.fraction), reduced(line.reduced), struck(line.struck.data()),
+        struck_mass(line.struck_mass.data()), inner_first(line.inner_first), inner(line.inner),
+        around(line.ring ? line.gaps() : 0), special(line.special.data()), candidates(line.candidates.data()),
+        waiting(line.waiting.data()), first(line.first.data()), first_by_links(line.first_by_links.data()),
         edges(line.edges.data()), visited(line.visited.data()) {}
 
   Gap<double>* cells;
+  double* numbers;
   const double* lag;
   double *due, *bound, *fraction, *reduced, *struck, *struck_mass;
   std::size_t inner_first, inner, around;  // around: gaps of a ring, else 0
-  std::uint32_t *candidates, *waiting, *first, *edges, *visited;
-  std::size_t count = 0, later = 0, firsts = 0, at_edges = 0, visits = 0;  // in these lists
+  const StepLine::Special* special;
+  std::uint32_t *candidates, *waiting, *first, *first_by_links, *edges, *visited;
+  std::size_t count = 0, later = 0, firsts = 0, by_links = 0, at_edges = 0, visits = 0;  // in these lists
 };
 
 // Which of a group are due after `from` and up to `last`.
@@ -98,12 +101,12 @@ HWY_INLINE void scan(StepLine& line, Local& l, double end) {
 HWY_INLINE bool leave(StepLine& line, Local& l, double end, std::size_t made) {
   constexpr std::size_t few = 16;
   if (few * l.later > made) return false;
+  for (std::size_t k = 0; k < l.later; ++k)
+    if (l.due[l.waiting[k]] <= line.listed_to) return false;
   std::size_t left = 0;
   for (std::size_t k = 0; k < l.later; ++k) {
-    const double due = l.due[l.waiting[k]];
-    if (due <= line.listed_to) return false;
     l.waiting[left] = l.waiting[k];
-    left += due <= end;
+    left += l.due[l.waiting[k]] <= end;
   }
   std::copy_n(l.waiting, left, line.candidates.data());
   line.left = planted(5) ? 0 : left;
@@ -140,18 +143,38 @@ HWY_INLINE bool is_first_on_ring(const Local& l, std::size_t i) {
   return first;
 }
 
+// Whether it is due before its neighbours by links too, where some cells are vacant: so far that two such collisions
+// have no gap in common.
+HWY_INLINE bool is_first_by_links(const StepLine& line, const Local& l, std::size_t i) {
+  const double due = l.due[i];
+  std::ptrdiff_t left = static_cast<std::ptrdiff_t>(i), right = left;
+  bool first = true;
+  for (int k = 0; k < 3; ++k) {
+    left = line.linked_left(left), right = line.linked_right(right);
+    first &= (due < l.due[left]) & (due < l.due[right]);
+  }
+  return first;
+}
+
 // Which of the candidates are first in their neighbourhoods, and which must wait.
-HWY_INLINE void decide(Local& l, double end) {
-  l.firsts = l.at_edges = l.later = 0;
+template <bool linked> HWY_INLINE void decide(const StepLine& line, Local& l, double end) {
+  l.firsts = l.by_links = l.at_edges = l.later = 0;
   for (std::size_t k = 0; k < l.count; ++k) {
     const std::size_t i = l.candidates[k];
     const bool is_due = l.due[i] <= end;
     bool now = is_due & is_first(l.due + i);
     l.waiting[l.later] = static_cast<std::uint32_t>(i);
-    if (i - l.inner_first >= l.inner) [[unlikely]] {
-      now = now && (l.around == 0 || planted(1) || is_first_on_ring(l, i));
+    if (linked ? l.special[i] != StepLine::none : i - l.inner_first >= l.inner) [[unlikely]] {
+      if (linked)
+        now = now && (planted(1) || is_first_by_links(line, l, i));
+      else
+        now = now && (l.around == 0 || planted(1) || is_first_on_ring(l, i));
       l.later += is_due & !now;
-      if (now) l.edges[l.at_edges++] = static_cast<std::uint32_t>(i);
+      if (!now) continue;
+      if (linked && l.special[i] == StepLine::near_vacant)
+        l.first_by_links[l.by_links++] = static_cast<std::uint32_t>(i);
+      else
+        l.edges[l.at_edges++] = static_cast<std::uint32_t>(i);
       continue;
     }
     l.later += is_due - now;
@@ -177,6 +200,7 @@ HWY_INLINE void follow(Local& l, std::size_t left, unsigned left_soon, std::size
 
 #include "cradle/core/parallel/steps/doubles.inl"
 #include "cradle/core/parallel/steps/pairs.inl"
+#include "cradle/core/parallel/steps/wet.inl"
 
 namespace cradle {
 namespace HWY_NAMESPACE {
@@ -194,16 +218,26 @@ int step(StepLine& line, const StepTask& task, StepScalars& scalars, double end,
     if (passes == most_passes || std::max(l.count, l.visits) > line.gaps()) return -1;
     if (passes++ % reach == reach - 1) [[unlikely]]
       for (std::size_t k = 0; k < l.count; ++k) line.guard(l.candidates[k] / StepLine::tile);
-    decide(l, end);
-    if (l.firsts + l.at_edges == 0 && l.later > 0) return -1;  // at the same time
+    decide<Collisions::linked>(line, l, end);
+    if (l.firsts + l.by_links + l.at_edges == 0 && l.later > 0) return -1;  // at the same time
     collisions.make(line, l, task, scalars, end);
     for (std::size_t k = 0; k < l.at_edges; ++k) {
-      const std::size_t i = l.edges[k], left = line.left_of(i), right = line.right_of(i);
+      const std::size_t i = l.edges[k];
+      std::size_t left = line.left_of(i), right = line.right_of(i);
+      if constexpr (Collisions::linked) {
+        left = line.guarded(line.linked_left(static_cast<std::ptrdiff_t>(i)));
+        right = line.guarded(line.linked_right(static_cast<std::ptrdiff_t>(i)));
+        line.guarded(line.linked_right(static_cast<std::ptrdiff_t>(right)));
+      }
       const bool left_later = l.due[left] > end, right_later = l.due[right] > end;
       if (!scalars.collide(i)) return -1;
       follow(l, left, left_later & (l.due[left] <= end), right, right_later & (l.due[right] <= end));
+      if constexpr (Collisions::linked) {  // the gap behind a particle that has merged is in this place now
+        l.waiting[l.later] = static_cast<std::uint32_t>(i);
+        l.later += l.due[i] <= end;
+      }
     }
-    result.collisions += l.firsts;
+    result.collisions += l.firsts + l.by_links;
     if (line.may_leave && end < task.stop && leave(line, l, end, result.collisions - before)) break;
   }
   passes += line.left > 0;  // what is left takes at least one more
@@ -228,6 +262,7 @@ bool run(StepLine& line, const StepTask& task, StepScalars& scalars, StepPace& p
   if (task.pairs) return run_by<Pairs>(task, line, scalars, pace, result);
 #endif
   if (task.pairs) return false;
+  if (task.law == StepLaw::wet) return run_steps(step<WetCollisions>, line, task, scalars, pace, result);
   if (task.law == StepLaw::any) return run_steps(step<Doubles<StepLaw::any, false>>, line, task, scalars, pace, result);
   if (task.law == StepLaw::of_speed)
     return task.unequal ? run_steps(step<Doubles<StepLaw::of_speed, true>>, line, task, scalars, pace, result)

@@ -21,7 +21,8 @@ class StepScalars {
   StepScalars& operator=(const StepScalars&) = delete;
   virtual ~StepScalars() = default;
 
-  // Makes the collision at a gap; false where it is for the event loop, or comes in the wrong order.
+  // Makes the collision at a gap; false where it is for the event loop, or comes in the wrong order. (At an edge, or
+  // where particles merge.)
   virtual bool collide(std::size_t gap) = 0;
   // StepLaw::any: computes what comes of the collisions at so many inner gaps, enters it in counts and ledger, and logs
   // it where collisions are observed. (StepLaw::of_speed: the same, where numbers are out of the range of vectors.)
@@ -31,8 +32,9 @@ class StepScalars {
   virtual void restore() = 0;
 };
 
-// Of Inelastic (law.hpp), for a restitution from 1/2 on and below it; of SpeedDependent; or by StepScalars::outcomes.
-enum class StepLaw : std::uint8_t { hard, soft, of_speed, any };
+// Of Inelastic (law.hpp), for a restitution from 1/2 on and below it; of SpeedDependent; by StepScalars::outcomes; or
+// Wet, of particles that pass through each other or merge.
+enum class StepLaw : std::uint8_t { hard, soft, of_speed, any, wet };
 
 // The numbers of SpeedDependent and of its functions (elementary.hpp); the cut-off is StepTask's.
 struct StepRestitution {
@@ -47,6 +49,7 @@ struct StepTask {
   double restitution = 1, half_sum = 1, cutoff = 0;
   double lost = 0;  // of w^2; with unequal masses of reduced mass times w^2
   StepRestitution of_speed;
+  double twice_loss = 0, below = 0, above = 0;  // of Wet; `lost` is the loss
   // Whether numbers are sums of two doubles (pairs.inl); then these are the lesser ones of those above.
   bool pairs = false;
   struct Low {

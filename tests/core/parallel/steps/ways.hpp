@@ -89,7 +89,7 @@ class Dice {
   std::mt19937_64 random_;
 };
 
-template <class T> Scene<T> random_scene(Dice& dice, bool unequal, double& duration) {
+template <class T> Scene<T> random_scene(Dice& dice, bool unequal, double& duration, bool with_walls = true) {
   const auto n = static_cast<ParticleIndex>(20 + 2 * dice.below(dice.one_of<std::size_t>({30, 200, 800})));
   duration = dice.one_of({1., 20., 60.}) * dice.uniform();
   if (!unequal && dice.below(4) == 0) {
@@ -107,7 +107,7 @@ template <class T> Scene<T> random_scene(Dice& dice, bool unequal, double& durat
   }
   const double last = static_cast<double>(n);
   const Scene<T> scene = std::make_shared<List<T>>(x, v, m, T(ring ? last : 0.));
-  if (ring || dice.below(3) > 0) return scene;
+  if (!with_walls || ring || dice.below(3) > 0) return scene;
   const auto wall = [&](double at) -> std::optional<Wall<T>> {
     if (dice.below(3) == 0) return {};
     return Wall<T>{
@@ -116,12 +116,7 @@ template <class T> Scene<T> random_scene(Dice& dice, bool unequal, double& durat
   return std::make_shared<Walled<T>>(scene, wall(-0.5), wall(last + 0.5));
 }
 
-template <class Chain> void expect_same_in_a_random_scene(Dice& dice) {
-  using T = typename Chain::Scalar;
-  constexpr bool unequal = !std::same_as<Chain, GapChain<T>>;
-  double duration = 0;
-  const Scene<T> scene = random_scene<T>(dice, unequal, duration);
-  const std::vector<double> times{0.6 * duration, duration};
+inline std::vector<SegmentsAs> random_ways(Dice& dice) {
   std::vector<SegmentsAs> ways = on_all_vectors({.anywhere = true}, 1);
   for (auto& [how, workers, observed] : ways) {
     how.gaps = 1 + dice.below(dice.one_of<std::size_t>({8, 100, 2000}));
@@ -129,6 +124,16 @@ template <class Chain> void expect_same_in_a_random_scene(Dice& dice) {
     how.collisions = dice.one_of({0., 0.5, 4., 20.});
     workers = static_cast<unsigned>(1 + dice.below(3));
   }
+  return ways;
+}
+
+template <class Chain> void expect_same_in_a_random_scene(Dice& dice) {
+  using T = typename Chain::Scalar;
+  constexpr bool unequal = !std::same_as<Chain, GapChain<T>>;
+  double duration = 0;
+  const Scene<T> scene = random_scene<T>(dice, unequal, duration);
+  const std::vector<double> times{0.6 * duration, duration};
+  const std::vector<SegmentsAs> ways = random_ways(dice);
   // Not what collapses: the plain loop takes minutes for it.
   const double restitution = dice.one_of({1., 0.999, 0.95, 0.6, 0.4});
   const double cutoff = restitution > 0.99 ? dice.one_of({0., 1e-5, 0.1}) : dice.one_of({0.01, 0.1});
@@ -143,7 +148,7 @@ template <class Chain> void expect_same_in_a_random_scene(Dice& dice) {
 
 // As many as take four seconds, and so many at least; by hand as many as CRADLE_FUZZ_SECONDS says, from the scene
 // CRADLE_FUZZ_SEED on.
-template <class Equal, class Unequal> void expect_same_in_random_scenes(std::uint64_t least) {
+template <class ExpectSame> void expect_same_in_random_scenes(std::uint64_t least, const ExpectSame& expect_same) {
   const char* asked = std::getenv("CRADLE_FUZZ_SECONDS");
   const auto end =
       std::chrono::steady_clock::now() + std::chrono::duration<double>(asked == nullptr ? 4. : std::atof(asked));
@@ -156,9 +161,14 @@ template <class Equal, class Unequal> void expect_same_in_random_scenes(std::uin
     SCOPED_TRACE("seed " + std::to_string(seed));
     if (asked != nullptr) std::printf("seed %llu\n", static_cast<unsigned long long>(seed)), std::fflush(stdout);
     Dice dice(seed);
-    dice.below(2) == 0 ? expect_same_in_a_random_scene<Equal>(dice) : expect_same_in_a_random_scene<Unequal>(dice);
+    expect_same(dice);
   }
   ::testing::Test::RecordProperty("seed", std::to_string(seed));
+}
+template <class Equal, class Unequal> void expect_same_in_random_scenes(std::uint64_t least) {
+  expect_same_in_random_scenes(least, [](Dice& dice) {
+    dice.below(2) == 0 ? expect_same_in_a_random_scene<Equal>(dice) : expect_same_in_a_random_scene<Unequal>(dice);
+  });
 }
 
 }  // namespace cradle::test

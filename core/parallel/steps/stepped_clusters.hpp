@@ -1,0 +1,148 @@
+#pragma once
+// A segment of a chain of clusters uses steps (steps.hpp) for wet particles that pass through each other. It makes
+// itself the collisions in which particles merge and those at cuts, at fronts and at the seam. If steps fail, it takes
+// its copy anew and goes through its event loop.
+
+#include <array>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <tuple>
+
+#include "cradle/core/engine/status.hpp"
+#include "cradle/core/laws/law.hpp"
+#include "cradle/core/laws/one_of.hpp"
+#include "cradle/core/parallel/cluster_segment.hpp"
+#include "cradle/core/parallel/steps/steps.hpp"
+
+namespace cradle {
+
+// Uses private members of the segment's part.
+template <class Law>
+requires(!Law::bounces_only && requires(const Law& law) {
+  law_as<Wet<double>>(law);
+}) struct Stepped<Law, ClusterSegment<double>> final : private StepScalars {
+ public:
+  static constexpr bool possible = true, on_rings = false;
+  using Part = ClusterSegment<double>;
+  using Report = typename Part::Report;
+
+  // Makes all collisions up to the local time `stop`, fewer than `most`, on what the part has taken.
+  bool run(const Steps& steps, Part& part, const Law& law, double stop, std::uint64_t most, Report& report) {
+    const Wet<double>* wet = law_as<Wet<double>>(law);
+    if (wet == nullptr || report.observe) return false;
+    if (report.pace.rest > 0) return --report.pace.rest, false;
+    part_ = &part, law_ = wet, report_ = &report;
+    const auto& gaps = part.line_.gaps;
+    StepTask task;
+    task.law = StepLaw::wet;
+    task.twice_loss = wet->twice_loss(), task.below = wet->below(), task.above = wet->above(), task.lost = wet->loss();
+    task.floor = gaps.floor();
+    task.rounder = gaps.ledger().rounder(), task.per_fine = gaps.ledger().per_fine();
+    task.stop = stop, task.most = most;
+    if (!(task.rounder > 0)) return false;  // a plain sum
+    made_ = {};
+    const std::size_t held = part.last_ + 1 - Part::first_;
+    line_.take(&part.line_.gaps[Part::first_], Part::first_, &gaps.lag(Part::first_), held);
+    line_.mark(0, line_.index(part.inner_first_), StepLine::edge);
+    line_.mark(line_.index(part.inner_last_) - 1, static_cast<std::ptrdiff_t>(held), StepLine::edge);
+    mark_edges();
+    StepResult inner;
+    const bool done = steps.run(line_, task, *this, report.pace, inner);
+    report.pace.made(done);
+    if (!done) return false;
+    report.counts = made_.counts;
+    report.counts.collisions += inner.collisions;
+    report.last_collision = std::max(made_.last, inner.last);
+    if (report.counts.collisions >= most) return false;
+    Ledger<double> ledger = gaps.ledger();
+    ledger.add_sums(inner.lost, static_cast<std::int64_t>(inner.rest));
+    part.line_.gaps.set_ledger(ledger);
+    part.line_.gaps.drop_lags(Part::first_, held);
+    return true;
+  }
+
+ private:
+  struct Totals {
+    Counts counts;
+    double last = -StepLine::never;
+  };
+
+  // How far on either side decisions in steps look for other gaps (steps.cpp).
+  static constexpr std::ptrdiff_t near = 8;
+
+  // The gaps at cuts, fronts and the seam, wherever they are now.
+  void mark_edges() {
+    for (const Slot at : {part_->inner_first_, part_->inner_last_, part_->seam_})
+      for (const Slot s : {at, at < Part::first_ ? at : part_->left(at)})
+        if (is_held(s)) line_.special[s - Part::first_] = StepLine::edge;
+  }
+
+  // The event loop's collision, where all that is not plain is refused. Lags stay as they are, and are dropped when all
+  // is done.
+  bool collide(std::size_t i) override {
+    auto& cells = part_->line_;
+    const Slot s = Part::first_ + i, n = cells.right(s);
+    const std::array<Slot, 3> touched{cells.left(s), s, n};
+    const double time = line_.due[i];
+    std::array<double, 3> lags{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      lags[k] = cells.gaps.lag(touched[k]);
+      if (is_held(touched[k]) && !(cells.gaps[touched[k]].time < time)) return false;
+    }
+    const auto [collision, own] = part_->collide(*law_, s, time, *report_);
+    const Outcome<double>& outcome = collision.outcome;
+    if (report_->nothing_left || includes(collision.notice, Notice::origin_must_move) ||
+        includes(collision.notice, Notice::gap_below_floor) || includes(collision.notice, Notice::needs_slots))
+      return false;
+    if (own) part_->lose(s, outcome.energy_lost);
+    for (std::size_t k = 0; k < 3; ++k) {
+      cells.gaps.set_lag(touched[k], lags[k]);
+      if (is_held(touched[k])) line_.due[line_.index(touched[k])] = cells.gaps[touched[k]].due;
+    }
+    const bool merges = outcome.event == Event::merge;
+    if (merges) line_.mark(line_.index(n) - near, line_.index(n) + near, StepLine::near_vacant);
+    mark_edges();
+    if (!own) return true;
+    ++made_.counts.collisions;
+    made_.counts.merges += merges;
+    made_.last = std::max(made_.last, time);
+    return true;
+  }
+  bool is_held(Slot s) const { return s - Part::first_ < line_.gaps(); }  // not beyond an end
+
+  void outcomes(const std::uint32_t*, std::size_t) override {}  // Wet is a law of vectors
+
+  void keep() override {
+    kept_ = {made_,
+             part_->line_.gaps.ledger(),
+             part_->edges(),
+             report_->left.size(),
+             report_->right.size(),
+             report_->carried.size()};
+  }
+  void restore() override {
+    made_ = kept_.made;
+    part_->line_.gaps.set_ledger(kept_.ledger);
+    part_->edges() = kept_.edges;
+    part_->set_inner();
+    report_->left.resize(kept_.left), report_->right.resize(kept_.right), report_->carried.resize(kept_.carried);
+    report_->nothing_left = false;
+  }
+
+  struct Kept {
+    Totals made;
+    Ledger<double> ledger;
+    std::tuple<Slot, Slot, Slot, Slot, Slot, Slot> edges;
+    std::size_t left, right, carried;  // lengths of logs
+  };
+
+  StepLine line_;
+  Part* part_ = nullptr;
+  const Wet<double>* law_ = nullptr;
+  Report* report_ = nullptr;
+  Totals made_;  // by this, not as vectors
+  Kept kept_;
+};
+
+}  // namespace cradle

@@ -245,9 +245,9 @@ std::string trust_table(const Scene& scene, const std::vector<Trusted>& runs) {
           "to be those of the exact "
           "system (cradle certify).\n";
   if (!scene.run.stop_gap && status_of_text(runs.back().outcome) == Exit::collapse)
-    text += "Each run ends where its own precision has settled the collapse, after another number of collisions, so "
-            "that the ends are not compared: with a run.stop_gap, 1e-20 say, all of them end at the same gap and can "
-            "be compared up to there.\n";
+    text += "Each run ends where its own precision has settled the collapse, after a number of collisions of its own, "
+            "so that the ends are not compared: with a run.stop_gap, 1e-20 say, all of them end at the same gap and "
+            "can be compared up to there.\n";
   return text;
 }
 

@@ -21,6 +21,17 @@ bool is_default(const Field& field, const Scene& scene) {
   return same_value(field, other, scene);
 }
 
+// A list for people: the decimals that sums and differences make, 28e-1, as 2.8.
+std::string with_points(std::string text) {
+  static const std::regex whole(R"([\[ -](\d\d+e-\d\d?)[,\]])");
+  for (std::smatch found; std::regex_search(text, found, whole);) {
+    const auto [negative, digits, power] = literal_of(found.str(1));
+    const auto never = [](std::int64_t, std::int64_t) { return false; };
+    text.replace(found[1].first, found[1].second, decimal_text(negative, digits, power, never));
+  }
+  return text;
+}
+
 }  // namespace
 
 std::vector<std::pair<std::string, std::string>> values(const Scene& scene, bool all) {
@@ -32,22 +43,6 @@ std::vector<std::pair<std::string, std::string>> values(const Scene& scene, bool
   }
   return result;
 }
-
-namespace {
-
-// Sums of decimals are written as 28e-1, which people read more easily as 2.8.
-std::string with_points(std::string text) {
-  static const std::regex whole(R"((^|[\[ -])(\d\d+e-\d\d?)(?=[,\]]))");
-  for (std::smatch found; std::regex_search(text, found, whole);) {
-    const DecimalLiteral of = literal_of(found.str(2));
-    const auto never = [](std::int64_t, std::int64_t) { return false; };
-    text.replace(static_cast<std::size_t>(found.position(2)), found.str(2).size(),
-                 decimal_text(false, of.digits, of.power, never));
-  }
-  return text;
-}
-
-}  // namespace
 
 std::string shortened(const std::string& value) {
   constexpr std::size_t most = 400;

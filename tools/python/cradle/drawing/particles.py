@@ -22,10 +22,6 @@ def one_falls(result):
     return "potential_energy" in result.means and len(result.scene["initial"].get("x", ())) == 1
 
 
-def line_of(points):
-    return "o-" if len(points) <= MARKED else "-"
-
-
 def parted(path, length):
     """The points (t, x) of a path, which ends where it crosses the seam of a ring and begins anew behind it."""
     seam = np.flatnonzero(np.abs(np.diff(path[:, 1])) > length / 2) + 1
@@ -47,7 +43,8 @@ def draw_particles(result, units, panels):
             paths.setdefault(int(particle), []).append((snapshot["time"], x))
     for (particle, path), colour in shaded(sorted(paths.items())):
         path = parted(np.array(path), result.setting("initial", "length", 0.0) or np.inf)
-        axes[0].plot(*(path / (units.t, units.x)).T, line_of(path), ms=3, color=colour, label=f"particle {particle}")
+        axes[0].plot(*(path / (units.t, units.x)).T, "o-" if len(path) <= MARKED else "-", ms=3,
+                     color=colour, label=f"particle {particle}")
     left = time_to_collapse(result) if shrinking else None
     for name, line in (("front_left", ":"), ("front_right", "--")):
         if name in series and not one_falls(result):
@@ -88,7 +85,8 @@ def draw_particles(result, units, panels):
         for pair in range(min(len(s["gap"]) for s in result.snapshots)):
             points = [(s["time"], s["gap"][pair]) for s in result.snapshots if s["gap"][pair] > 0]
             points = np.array(points).reshape(-1, 2)
-            axes[2].semilogy(points[:, 0] / units.t, points[:, 1] / units.x, line_of(points), ms=3, label=f"gap {pair}")
+            axes[2].semilogy(points[:, 0] / units.t, points[:, 1] / units.x, "o-" if len(points) <= MARKED else "-", ms=3,
+                             label=f"gap {pair}")
         axes[2].set(xlabel=units.time_label(), ylabel=units.label("gap", r"gap$\,/\,l$"))
 
 

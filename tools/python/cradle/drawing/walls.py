@@ -2,7 +2,7 @@
 Kadanoff, Phys. Rev. Lett. 74, 1268, 1995)."""
 import numpy as np
 
-from .particles import MARKED, line_of
+from .particles import MARKED
 from .style import BLUE, GREY, ORANGE
 
 FEW = 12  # snapshots, for quantiles against time to mean something
@@ -34,7 +34,7 @@ def draw(result, panels):
     low, high = axes[0].get_ylim()
     axes[0].set_ylim(low - 0.2 * (high - low), high)  # room for the legend
     axes[0].legend(loc="lower left", ncol=3, fontsize=7)
-    axes[1].plot(times, share, line_of(times), color=ORANGE, ms=3, lw=0.8)
+    axes[1].plot(times, share, "o-" if len(times) <= MARKED else "-", color=ORANGE, ms=3, lw=0.8)
     axes[1].axhline(1 / len(snapshots[-1]["x"]), color=GREY, lw=0.8, ls="--", label="equal shares")
     axes[1].set(ylabel="share of the energy\nthat one particle has", ylim=(0, 1.05))
     axes[1].legend(loc="center right", fontsize=7)

@@ -85,7 +85,7 @@ def draw_particles(result, units, panels):
         for pair in range(min(len(s["gap"]) for s in result.snapshots)):
             points = [(s["time"], s["gap"][pair]) for s in result.snapshots if s["gap"][pair] > 0]
             points = np.array(points).reshape(-1, 2)
-            axes[2].semilogy(points[:, 0] / units.t, points[:, 1] / units.x, "o-" if len(points) <= MARKED else "-", ms=3,
+            axes[2].semilogy(*(points / (units.t, units.x)).T, "o-" if len(points) <= MARKED else "-", ms=3,
                              label=f"gap {pair}")
         axes[2].set(xlabel=units.time_label(), ylabel=units.label("gap", r"gap$\,/\,l$"))
 

@@ -21,11 +21,11 @@ Exit check(const CommonOptions& options) {
   check_particles(scene);
 
   const Cost cost = expected_cost(scene);
-  fmt::print("\nparticles in the active zone at the end: {:.3g} at most\n", cost.particles);
+  fmt::print("\nparticles in the active zone at the end: {} at most\n", about(cost.particles, 3));
   fmt::print("{}", expected_lines(scene, cost));
   if (cost.collisions)
-    fmt::print("time{}: about {:.2g} s at {:.2g} collisions/s\n", cost.collapse || cost.clustering ? " until then" : "",
-               *cost.collisions / cost.collisions_per_second, cost.collisions_per_second);
+    fmt::print("time{}: about {} s at {} collisions/s\n", cost.collapse || cost.clustering ? " until then" : "",
+               about(*cost.collisions / cost.collisions_per_second), about(cost.collisions_per_second));
   const unsigned threads = thread_count(options.threads);
   const Threading threading = expected_threading(scene, cost, threads);
   if (threading.alone.empty())
@@ -33,7 +33,7 @@ Exit check(const CommonOptions& options) {
                threading.gain);
   else
     fmt::print("threads: one does the work ({})\n", threading.alone);
-  fmt::print("memory: about {:.2g} MB\n", cost.memory * 1e-6);
+  fmt::print("memory: about {} MB\n", about(cost.memory * 1e-6));
   return Exit::done;
 }
 

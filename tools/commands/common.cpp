@@ -15,7 +15,7 @@ std::vector<std::string> CommonOptions::all_overrides() const {
 
 Scene CommonOptions::read() const {
   Scene read = read_scene(scene, all_overrides());
-  if (!quiet) notify(left_out());
+  if (!quiet) notify(left_out() + read.remarks);
   return read;
 }
 

@@ -84,11 +84,11 @@ Exit info_of_run(const InfoArguments& options) {
     pace.add(0, scene.run.start.value);
     for (const RunStatus& status : journal.statuses) pace.add(status.seconds, status.time);
     const auto left = expected_cost(scene).predictable() ? pace.until(until) : std::nullopt;
-    fmt::print(
-        "{}{}{}{}", line("time", fmt::format("{:.10g} of {:.10g}", now.time, until)),
-        line("collisions", fmt::format("{}", now.collisions)),
-        line("collisions/s", fmt::format("{:.3g} over the last minute", collisions_per_second(journal.statuses))),
-        line("computing", duration(now.seconds) + (left ? fmt::format(", {} left", duration(*left)) : "")));
+    fmt::print("{}{}{}{}", line("time", fmt::format("{:.10g} of {:.10g}", now.time, until)),
+               line("collisions", fmt::format("{}", now.collisions)),
+               line("collisions/s", fmt::format("{:.3g} {}", collisions_per_second(journal.statuses),
+                                                now.seconds > 60 ? "over the last minute" : "so far")),
+               line("computing", duration(now.seconds) + (left ? fmt::format(", {} left", duration(*left)) : "")));
     for (const auto& [name, value] : {std::pair("smallest gap", now.gap_min), std::pair("closure gap", now.closure_gap),
                                       std::pair("closure speed", now.closure_speed)})
       if (!std::isnan(value)) fmt::print("{}", line(name, fmt::format("{:.6g}", value)));

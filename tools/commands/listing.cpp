@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
+#include <string_view>
 
 namespace cradle::tools {
 
@@ -27,6 +29,12 @@ std::string quantities(const Result& result, const std::string& group) {
     if (other.name.starts_with(group + "/") && is_detail(other))
       names += (names.empty() ? "" : ", ") + other.name.substr(group.size() + 1);
   return names;
+}
+
+// Up to the number of a table: "snapshots/" of snapshots/0007.
+std::string_view kind_of(const Group& group) {
+  const std::string_view name = group.name;
+  return name.substr(0, name.find_last_not_of("0123456789") + 1);
 }
 
 std::string first_and_last(const Column& column) {
@@ -66,8 +74,17 @@ std::string listing(const Result& result, const std::string& file, bool all) {
     if (name != "scene" && (all || value != decltype(value){std::uint64_t{0}}))
       lines += fmt::format("{:<23} {}\n", name, text(value));
   lines += listing(scene, all);
-  for (const auto& group : result.groups)
-    if (all || !is_detail(group)) lines += listing(result, group);
+  // Of many tables of one kind the first and the last.
+  std::map<std::string_view, std::size_t> of_kind, seen;
+  for (const auto& group : result.groups) ++of_kind[kind_of(group)];
+  for (const auto& group : result.groups) {
+    const std::size_t tables = of_kind[kind_of(group)], k = seen[kind_of(group)]++;
+    if (const bool folded = !all && tables > 12; folded && k >= 2 && k + 1 < tables) {
+      if (k == 2) lines += fmt::format("... {} more, which --all lists\n", tables - 3);
+    } else if (all || !is_detail(group)) {
+      lines += listing(result, group);
+    }
+  }
   return lines;
 }
 

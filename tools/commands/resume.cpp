@@ -40,7 +40,9 @@ Exit resume(const ResumeArguments& options) {
   }
   if (!options.quiet) {
     notify(files.not_extended());
-    fmt::print("{}: continuing from {}\n", file, files.resumed_from());
+    fmt::print("{}: {}\n", file,
+               files.resumed_from().empty() ? "nothing to continue from, the run begins again"
+                                            : "continuing from " + files.resumed_from());
   }
   return run_command(files, file, options, interrupt);
 }

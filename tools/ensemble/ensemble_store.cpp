@@ -17,6 +17,13 @@ namespace {
 
 std::string plural(std::uint64_t n, const char* what) { return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s"); }
 
+std::string spreads_text(const std::vector<SpreadRequest>& spreads) {
+  std::string text;
+  for (const auto& [name, bins] : spreads)
+    text += fmt::format("{}--spread {}={}:{}:{}", text.empty() ? "" : " ", name, bins.from, bins.to, bins.bins);
+  return text.empty() ? "no --spread" : text;
+}
+
 }  // namespace
 
 EnsembleStore::EnsembleStore(Study study, std::string file)
@@ -38,7 +45,9 @@ void EnsembleStore::check_identity(const JournalHeader& there, const std::string
   std::string found = points.size() == study_.points.size() ? "" : plural(points.size(), "ensemble");
   for (std::size_t k = 0; k < points.size() && found.empty(); ++k)
     found = scene_difference(parse_scene(points[k].second, path), study_.points[k].scene);
-  if (found.empty()) found = "another version of the program, other --spread bins or other listed particles";
+  if (found.empty() && there.spreads != study_.spreads)
+    found = fmt::format("{}, here {}", spreads_text(there.spreads), spreads_text(study_.spreads));
+  if (found.empty()) found = "another version of the program, or other listed particles";
   throw Error({path, 0, ""}, "holds ensembles of something else", found,
               "give another -o FILE, or --force to replace it");
 }

@@ -1,6 +1,7 @@
 #include "cradle/tools/ensemble/state.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <numeric>
@@ -34,9 +35,14 @@ EnsembleState::EnsembleState(std::string group, Scene scene, const std::vector<S
   for (const SpreadRequest& request : spreads) {
     const auto found = std::ranges::find(layout_.quantities, request.name,
                                          [](const Quantity& of) { return of.group + "/" + of.name; });
-    if (found == layout_.quantities.end())
+    if (found == layout_.quantities.end()) {
+      std::vector<std::string> names;  // of profiles those of the first time
+      for (const Quantity& of : layout_.quantities)
+        if (!of.group.starts_with("profiles/") || of.group == "profiles/0000")
+          names.push_back(of.group == "series" ? of.name : of.group + "/" + of.name);
       throw Error({"--spread", 0, ""}, "nothing of this name in the series or profiles", request.name,
-                  "choose one of those that `cradle info` lists for a result of this scene");
+                  fmt::format("choose one of {}", fmt::join(names, ", ")));
+    }
     spreads_.push_back({*found, Histograms(request.bins, found->size())});
   }
 }

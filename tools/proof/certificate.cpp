@@ -47,6 +47,12 @@ std::string shown(const Enclosed& x) {
                      x.radius);
 }
 
+// 10^x in two digits, also below the range of double.
+std::string power_of_ten(double x) {
+  if (!(std::abs(x) > 300) || std::isinf(x)) return fmt::format("{:.2g}", std::pow(10, x));
+  return fmt::format("{:.1f}e{:.0f}", std::pow(10, x - std::floor(x)), std::floor(x));
+}
+
 // That of the last collision has all digits of the proof.
 std::string shown_time(const std::string& time) {
   constexpr std::size_t most = 40;
@@ -109,17 +115,18 @@ std::string certificate_text(const Certified& run) {
     text = fmt::format("undecided {}\nproved up to there: {} collisions\n", run.undecided(), c.collisions);
   if (const std::string beyond = run.not_proved(); !beyond.empty()) text += fmt::format("not proved: {}\n", beyond);
   text += fmt::format("  scene     {}, checksum {:016x}\n", run.scene.name, crc64(effective_toml(run.scene)));
-  text += fmt::format("  run in    {}, proved in balls around {}; {:.4g} % of collisions decided in plain doubles\n",
-                      precision_name(run.scene.run), c.digits_text, 100 * share);
+  text += fmt::format(
+      "  run in    {}, proved with error bounds in {}; {:.4g} % of collisions decided with those in doubles\n",
+      precision_name(run.scene.run), c.digits_text, 100 * share);
   if (!c.samples.empty()) {
     const CertainSample& last = c.samples.back();
     text += fmt::format("  energy    {} at t = {}\n", shown(last.energy), shown_time(last.time_text));
     if (last.front_left) text += fmt::format("  fronts    {}\n", shown(*last.front_left));
     if (last.front_right) text += fmt::format("            {}\n", shown(*last.front_right));
-    text += fmt::format("  margins   places known to 1e{:.1f}", last.widest);
+    text += fmt::format("  margins   positions known to within {}", power_of_ten(last.widest));
     if (std::isfinite(last.least_gap))
-      text += fmt::format(", smallest gap 1e{:.1f}, gaps known to 1e{:.1f} of themselves", last.least_gap,
-                          last.widest_of_gap);
+      text += fmt::format(", smallest gap {}, every gap known to within {} of itself", power_of_ten(last.least_gap),
+                          power_of_ten(last.widest_of_gap));
     text += '\n';
     for (const End end : {End::left, End::right})
       if (const auto& wall = last.walls[static_cast<std::size_t>(end)]) {

@@ -31,6 +31,7 @@ struct TraceSample {
   std::uint64_t digest = 0;  // of the collisions so far, see core/observe/trace.hpp
   std::uint64_t collisions = 0, merges = 0;
   std::string energy, front;
+  bool at_collision = false;
 };
 
 class TraceObserver final : public RunObserver {
@@ -39,7 +40,7 @@ class TraceObserver final : public RunObserver {
   void sample(const RunSample& sample) override {
     if (sample.of_series || sample.at_collision)
       samples.push_back({sample.time.value, trace_.digest(), sample.counts.collisions, sample.counts.merges,
-                         sample.energy, sample.front_right});
+                         sample.energy, sample.front_right, sample.at_collision});
   }
   std::vector<TraceSample> samples;
 
@@ -118,7 +119,11 @@ Trusted compare(const Traced& run, const Traced& reference) {
   const auto shared = [&](const std::string& x, const std::string& y, const std::string& scale) {
     return shared_digits(x, run.scene.run, y, reference.scene.run, scale);
   };
-  for (std::size_t k = 0; k < samples; ++k) {
+  // States after different numbers of collisions, in which two runs have ended, are not compared.
+  const auto same_moment = [&](std::size_t k) {
+    return a[k].at_collision == b[k].at_collision && (!a[k].at_collision || a[k].collisions == b[k].collisions);
+  };
+  for (std::size_t k = 0; k < samples && same_moment(k); ++k) {
     trusted.times.push_back(a[k].time);
     trusted.energy_digits.push_back(shared(a[k].energy, b[k].energy, b[0].energy));
     trusted.front_digits.push_back(shared(a[k].front, b[k].front, "0"));
@@ -221,7 +226,8 @@ std::string trust_table(const Scene& scene, const std::vector<Trusted>& runs) {
   for (const auto& run : runs) {
     const bool reference = &run == &runs.back();
     const auto digits = [&](double d) { return reference || d < 0 ? std::string("-") : fmt::format("{:.1f}", d); };
-    const auto last = [&](const std::vector<double>& d) { return digits(d.empty() ? -1 : d.back()); };
+    const bool moved = !run.times.empty() && run.times.back() > scene.run.start.value;
+    const auto last = [&](const std::vector<double>& d) { return digits(moved ? d.back() : -1); };
     const auto proved = run.proved_to_end     ? std::string("to the end")
                         : run.proved_time > 0 ? fmt::format("until {:.8g}", run.proved_time)
                                               : "-";
@@ -234,12 +240,14 @@ std::string trust_table(const Scene& scene, const std::vector<Trusted>& runs) {
   }
   text += "\nTimes are those of samples (output.series). Right: the same sequence of collisions at every particle as "
           "the reference; collisions: how many these are.\ncounts: numbers of collisions and merges. energy (against "
-          "that at the start), front: digits shared with the reference at the last sample, of those that the type "
-          "has; t_c: of the collapse time.\nproved: until when these collisions are proved to be those of the exact "
+          "that at the start), front: digits shared with the reference at the last sample that both have, of those "
+          "that the type has, 100 at most; t_c: of the collapse time.\nproved: until when these collisions are proved "
+          "to be those of the exact "
           "system (cradle certify).\n";
   if (!scene.run.stop_gap && status_of_text(runs.back().outcome) == Exit::collapse)
-    text += "Each run ends where its own precision has settled the collapse: with a run.stop_gap, 1e-20 say, all of "
-            "them end at the same gap and can be compared up to there.\n";
+    text += "Each run ends where its own precision has settled the collapse, after a number of collisions of its own, "
+            "so that the ends are not compared: with a run.stop_gap, 1e-20 say, all of them end at the same gap and "
+            "can be compared up to there.\n";
   return text;
 }
 

@@ -194,6 +194,7 @@ struct Scene {
   Output output;
   Sweep sweep;
   std::map<std::string, Place, std::less<>> places;  // of the keys that its text gives
+  std::string remarks;                               // lines for the user: what the scene says, but may not mean
 
   /// Where a key stands, or a table begins; without a line if the text has neither.
   Place place(std::string_view key) const;

@@ -1,10 +1,11 @@
 // A scene as text, from the table of fields: the effective scene, the keys that differ from their defaults, the manual.
 #include <fmt/format.h>
 
-#include <map>
-
 #include <algorithm>
+#include <map>
+#include <regex>
 
+#include "cradle/tools/scene/decimal_parts.hpp"
 #include "cradle/tools/scene/fields.hpp"
 #include "cradle/tools/scene/scene.hpp"
 
@@ -18,6 +19,17 @@ bool is_default(const Field& field, const Scene& scene) {
   Scene other = scene;
   store_default(field, other);
   return same_value(field, other, scene);
+}
+
+// A list for people: the decimals that sums and differences make, 28e-1, as 2.8.
+std::string with_points(std::string text) {
+  static const std::regex whole(R"([\[ -](\d\d+e-\d\d?)[,\]])");
+  for (std::smatch found; std::regex_search(text, found, whole);) {
+    const auto [negative, digits, power] = literal_of(found.str(1));
+    const auto never = [](std::int64_t, std::int64_t) { return false; };
+    text.replace(found[1].first, found[1].second, decimal_text(negative, digits, power, never));
+  }
+  return text;
 }
 
 }  // namespace
@@ -34,10 +46,11 @@ std::vector<std::pair<std::string, std::string>> values(const Scene& scene, bool
 
 std::string shortened(const std::string& value) {
   constexpr std::size_t most = 400;
-  if (value.size() <= most || value.front() != '[') return value;
+  if (value.empty() || value.front() != '[') return value;
+  if (value.size() <= most) return with_points(value);
   const auto numbers = static_cast<std::size_t>(std::count(value.begin(), value.end(), ',')) + 1;
   const auto first = value.find(',', value.find(',') + 1), last = value.rfind(',');
-  return fmt::format("{}, ...{} ({} values)", value.substr(0, first), value.substr(last), numbers);
+  return with_points(fmt::format("{}, ...{} ({} values)", value.substr(0, first), value.substr(last), numbers));
 }
 
 std::string effective_toml(const Scene& scene) {

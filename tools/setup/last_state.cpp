@@ -85,6 +85,11 @@ ListedParticles last_state(const std::string& file, Scene& scene) {
     listed.x = {listed.x[0]};
   }
   if (other.initial.on_ring() && !scene.initial.on_ring()) scene.initial.length = other.initial.length;
+  if ((other.walls.any() && !scene.walls.any()) || (other.gravity.acts() && !scene.gravity.acts()))
+    scene.remarks +=
+        fmt::format("{}a state of a run with walls or gravity, which this scene lacks (found {}): repeat "
+                    "[walls] and [gravity] of that run, if it is to go on\n",
+                    scene.place("initial.file").prefix(), scene.walls.any() ? "no [gravity]" : "no [walls]");
   const NumberRange range(scene.run);
   for (const DecimalColumn* numbers : {&listed.x, &listed.v, &listed.m})
     for (std::size_t i = 0; i < numbers->size(); ++i) range.check((*numbers)[i], {file, 0, snapshot});

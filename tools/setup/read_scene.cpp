@@ -142,6 +142,18 @@ std::string similar_scene(const std::filesystem::path& path) {
                          : fmt::format("did you mean {}?", nearest);
 }
 
+// A single particle meets walls alone, whose restitution is 1 unless it is given.
+void note_idle_restitution(Scene& scene) {
+  const bool loses = scene.law.type == LawType::inelastic && scene.law.restitution < Decimal("1");
+  if (!loses || scene.initial.type != InitialType::list || scene.initial.x.size() != 1) return;
+  for (const auto& [name, wall] :
+       {std::pair("walls.left", &scene.walls.left), std::pair("walls.right", &scene.walls.right)})
+    if (wall->position && !wall->temperature && !scene.places.contains(name + std::string(".restitution")))
+      scene.remarks += fmt::format("{}acts on nothing, since a single particle meets no other (found {}): give "
+                                   "{}.restitution, that of the wall, which is 1 here\n",
+                                   scene.place("law.restitution").prefix(), scene.law.restitution.text, name);
+}
+
 Scene scene_of(const Entries& entries, const std::string& source_name) {
   Scene scene;
   const std::filesystem::path path(source_name);
@@ -159,6 +171,7 @@ Scene scene_of(const Entries& entries, const std::string& source_name) {
   else if (scene.initial.file)
     read_list(path.parent_path() / *scene.initial.file, scene);
   if (scene.output.word) check_word(entries.at("output.word").place, scene);
+  note_idle_restitution(scene);
   return scene;
 }
 

@@ -47,7 +47,7 @@ class RunFiles final : public Sink {
   /// Why there is nothing to continue, else empty; and the status with which that run ended.
   const std::string& over() const { return over_; }
   Exit over_status() const { return over_status_; }
-  /// Where the run continues from: "t = 1200, 3.4e7 collisions", or "the start".
+  /// Where the run continues from: "t = 1200, 3.4e7 collisions"; empty: it begins again.
   const std::string& resumed_from() const { return from_; }
   /// Which lists of times a later end does not extend, a line for the user; empty: none.
   const std::string& not_extended() const { return not_extended_; }
@@ -83,7 +83,7 @@ class RunFiles final : public Sink {
   std::uint64_t records_ = 0, check_ = 0;
   GrowingTables waiting_;  // rows not in the journal yet: it has not begun, or the disk was full
   std::unique_ptr<StateReader> state_;
-  std::string over_, not_extended_, from_ = "the start";
+  std::string over_, not_extended_, from_;
   Exit over_status_ = Exit::done;
   std::uint64_t collisions_before_ = 0;  // made in earlier calls
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <iterator>
 #include <numbers>
 
@@ -219,13 +220,17 @@ std::string end_line(const Scene& scene) {
 
 }  // namespace
 
+std::string about(double x, int digits) {
+  return fmt::format("{:g}", std::strtod(fmt::format("{:.{}g}", x, digits).c_str(), nullptr));
+}
+
 std::string expected_lines(const Scene& scene, const Cost& cost) {
   const bool loses = law_row(scene).merges || scene.law.restitution < Decimal("1");
   if (!cost.collisions) {
     const std::string floor = collapsing_floor(scene);
     const bool endless = (loses || !floor.empty()) && !particles_merge(scene) && !stops_at_collapse(scene);
     const bool rests = (floor == "walls.left" ? scene.walls.left : scene.walls.right).rest_speed.has_value();
-    return fmt::format("collisions and time: not known beforehand for this initial state{}{}\n",
+    return fmt::format("collisions and time: there is no estimate for this scene{}{}\n",
                        endless ? "; where particles collapse they may have no limit" : "",
                        !endless || floor.empty() || rests
                            ? ""
@@ -234,11 +239,12 @@ std::string expected_lines(const Scene& scene, const Cost& cost) {
   const auto* after = stops_at_collapse(scene) ? "where the run stops"
                       : particles_merge(scene) ? "after which particles merge"
                                                : "without limit after it";
-  std::string text = fmt::format("collisions: about {:.2g}", *cost.collisions);
-  if (cost.collapse) text += fmt::format(" until inelastic collapse at about t = {:.3g}, {}", *cost.collapse, after);
+  std::string text = fmt::format("collisions: about {}", about(*cost.collisions));
+  if (cost.collapse)
+    text += fmt::format(" until inelastic collapse at about t = {}, {}", about(*cost.collapse, 3), after);
   if (cost.clustering)
-    text += fmt::format(" until particles cluster at about t = {:.3g}, by Haff's law; how many follow is not known{}",
-                        *cost.clustering,
+    text += fmt::format(" until particles cluster at about t = {}, by Haff's law; how many follow is not known{}",
+                        about(*cost.clustering, 3),
                         particles_merge(scene)     ? ""
                         : stops_at_collapse(scene) ? ", until clusters collapse"
                                                    : ": clusters collapse, and have no limit after it");
@@ -259,7 +265,7 @@ Threading expected_threading(const Scene& scene, const Cost& cost, unsigned thre
   if (scene.run.coordinates != Coordinates::gaps) return alone("absolute coordinates");
   if (scene.run.collapse == scene::CollapsePolicy::contact_time) return alone("collisions with a memory");
   if (!merge && scene.run.collapse == scene::CollapsePolicy::stop && scene.law.restitution < Decimal("1"))
-    return alone("a collapse to be found");
+    return alone("run.collapse = \"stop\" watches every collision");
   // Two segments in two threads are 1.8 to 2.1 times as fast as the plain loop, bench/results/speed.md. One thread
   // alone sorts and writes events: then two are 1.0 to 1.6 times as fast as one.
   const double efficiency = scene.output.events ? 0.65 : 0.9;

@@ -27,6 +27,9 @@ Cost expected_cost(const Scene& scene);
 /// ends then and what ends it sooner or takes it past; or that nothing is known.
 std::string expected_lines(const Scene& scene, const Cost& cost);
 
+/// A number of so many digits without a power of ten below a million: 1000, not 1e+03.
+std::string about(double x, int digits = 2);
+
 /// These lines if the run ends at a collapse, goes past it or past clustering; else empty.
 std::string expected_warning(const Scene& scene);
 

@@ -126,6 +126,8 @@ class Arguments(small.Case):
                 ("resume", cradle.resume, 5)):
             self.refused(wrong, call, *arguments)
         self.refused("output", cradle.run, "collapse3", output=5)
+        self.refused(r"run: no such argument \(found restitution\): .*set={'law.restitution'", cradle.run, "fig2",
+                     restitution=0.9)
 
     def test_messages_name_arguments(self):
         other = {"scene": "collapse3", "set": {"law.restitution": 0.06}}

@@ -74,6 +74,24 @@ class Pictures(small.Case):
             self.assertIn("front_right", result.series)
             self.assertEqual([ax.get_ylabel()[:6] for ax in cradle.plot.ensemble(result).axes], ["energy", "collis"])
 
+    def test_a_spread_that_was_counted_is_drawn(self):
+        with cradle.ensemble("fig2", 4, small.SHOCK | {"output.profiles.times": []}, output="spread.h5",
+                             spread=["energy=0:100:9", "particles=0:100:9"]) as result:
+            axes = cradle.plot.ensemble(result).axes
+        self.assertEqual(["half of the replicas" in ax.get_legend_handles_labels()[1] for ax in axes],
+                         [ax.get_ylabel()[:6] in ("energy", "partic") for ax in axes])
+        self.assertEqual(axes[-1].get_ylabel(), "particles")
+
+    def test_paths_end_at_the_seam_of_a_ring_and_a_ball_has_its_height(self):
+        ring = {"law": {"type": "inelastic", "restitution": 1}, "run": {"until": 9},
+                "initial": {"type": "list", "x": [0], "v": [1], "length": 4}, "output": {"snapshots": list(range(9))}}
+        ball = {"law": {"type": "inelastic", "restitution": 1}, "run": {"until": 1},
+                "initial": {"type": "list", "x": [2], "v": [0], "m": [3]}, "gravity": {"acceleration": -1}}
+        for scene, wanted in ((ring, [0, 1, 2, 3, np.nan, 0, 1, 2, 3, np.nan, 0]), (ball, [2, 1.5])):
+            with cradle.run(scene, output="path.h5", force=True) as result:
+                found = cradle.plot.particles(result).axes[0].get_lines()[0].get_ydata()
+            np.testing.assert_allclose(found if scene is ring else found[[0, -1]], wanted, atol=1e-12)
+
     def test_draw_into_given_axes(self):
         figure, axes = plt.subplots(2, 2)
         given = cradle.plot.energy(small.shock(), axes=axes[:, 1])

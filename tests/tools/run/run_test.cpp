@@ -63,21 +63,6 @@ TEST_F(Run, CollapseStopsOnceItsTimeIsSettled) {
   EXPECT_TRUE(has(run.out, "t_c = ")) << "the report is printed under --quiet too";
 }
 
-TEST_F(Run, TrustedTimesOfAChaoticSceneRiseWithDigits) {
-  write("wet.toml", "law = { type = 'wet', loss = 0.01 }\nrun.until = 19500\noutput.series.every = 500\n"
-                    "initial = { type = 'rows', particles = 20000, speed = 0.5, perturbation = 0.0005 }\n");
-  shell("cradle trust wet.toml --digits 16,31,50,100,200", 0);
-  const auto result = read("wet-trust.h5");
-  std::vector<double> times;
-  for (const auto& group : result.groups)
-    times.push_back(tools::attribute<double>(group.attributes, "collisions_right_until", ""));
-  ASSERT_EQ(times.size(), 5U);
-  EXPECT_LT(times[0], times[1]);
-  EXPECT_LT(times[1], times[2]);
-  EXPECT_LT(times[2], times[3]);
-  EXPECT_EQ(times[3], 19500) << "100 digits reach the end";
-}
-
 // What the type does not hold is refused (tests/tools/messages.txt); what a double does not hold is infinite where
 // doubles are, and has all its digits below /exact.
 TEST_F(Run, EnergiesThatOverflow) {
@@ -140,35 +125,6 @@ TEST_F(Run, EnergyAtACollapseHasDigits) {
   EXPECT_LT(tools::attribute<double>(result.attributes, "energy_digits", ""), 16);
   EXPECT_LT(std::abs(tools::attribute<double>(result.attributes, "ledger_error", "")), 1e-15);
   EXPECT_EQ(tools::attribute<double>(result.find("snapshots/0000")->attributes, "gap_min", ""), 0);
-}
-
-// Above the threshold of collapse, and of numbers that doubles do not add up to the momentum of: 0.3 - 0.1 - 0.2.
-TEST_F(Run, EnergyIsNeverNegative) {
-  for (const std::string set : {"law.restitution=0.072", "initial.v=[0.3,-0.1,-0.2] --set run.until=20"}) {
-    const Printed run = shell("cradle run collapse3 --quiet --force --set output.events=false -o a.h5 --set " + set);
-    ASSERT_EQ(run.status, set.front() == 'l' ? 0 : 3) << run.err;
-    const auto result = read("a.h5");
-    const auto energy = numbers(result, "series", "energy");
-    for (std::size_t k = 1; k < energy.size(); ++k) {
-      EXPECT_GE(energy[k], 0) << set;
-      EXPECT_LE(energy[k], energy[k - 1]) << set;
-    }
-    EXPECT_LT(energy.back(), set.front() == 'l' ? 1e-70 : 1e-250) << set;
-  }
-}
-
-// No type shares more digits with another run than it has.
-TEST_F(Run, TrustedDigitsAreThoseOfTheType) {
-  shell("cradle trust fig6 --set initial.particles=2000 --set run.until=100 --digits 16,31,50", 0);
-  const auto result = read("fig6-trust.h5");
-  ASSERT_EQ(result.groups.size(), 3U);
-  const double most[] = {16, 32, 50};
-  for (std::size_t k = 0; k < 3; ++k)
-    for (const auto& column : result.groups[k].columns)
-      if (column.name != "time") {
-        const auto& digits = std::get<std::vector<double>>(column.values);
-        EXPECT_LE(*std::max_element(digits.begin(), digits.end()), most[k]) << column.name;
-      }
 }
 
 }  // namespace cradle::tests::run_test

@@ -165,7 +165,7 @@ TEST_F(Resuming, WithoutACheckpointALaterEndIsRunFromTheStart) {
   const Scene scene = dry_rows("output.checkpoint.every_seconds=0");
   begin("a.h5", scene, {}, 1);
   std::filesystem::remove(file("a.h5.checkpoint"));  // of a machine so slow that the run took two seconds
-  EXPECT_EQ(RunFiles(file("a.h5"), "120").resumed_from(), "the start");
+  EXPECT_EQ(RunFiles(file("a.h5"), "120").resumed_from(), "");
   ASSERT_EQ(resume("a.h5", "120", {}, 1).end, RunEnd::reached);
   expect_as_in_one_go("a.h5");
 }
@@ -177,7 +177,7 @@ TEST_F(Resuming, AnExtensionStoppedBeforeItsFirstCheckpointBeginsAgain) {
   const std::string checkpoint = contents(file("a.h5.checkpoint"));
   ASSERT_EQ(resume("a.h5", "120", {.checks = 2}, 1).end, RunEnd::interrupted);
   { std::ofstream(file("a.h5.checkpoint"), std::ios::binary) << checkpoint; }  // as a kill before it was written
-  EXPECT_NE(RunFiles(file("a.h5"), std::nullopt).resumed_from(), "the start");
+  EXPECT_NE(RunFiles(file("a.h5"), std::nullopt).resumed_from(), "");
   ASSERT_EQ(resume("a.h5", std::nullopt, {}, 1).end, RunEnd::reached);
   expect_as_in_one_go("a.h5");
 }

@@ -62,8 +62,8 @@ TEST_F(Files, ARunInProgressCanBeInspected) {
                 "until cradle info a.h5.part >info && grep -q '^time.* of 1e+15' info; do sleep 0.1; done; cat info; "
                 "echo ---; cradle info a.h5.checkpoint; kill -9 $pid",
             0);
-  for (const char* said : {"journal of a run", "\ntime  ", " of 1e+15", "\ncollisions  ", "over the last minute",
-                           "\ncomputing  ", "\ncheckpoint  ", "/series", "energy_lost", "---\ncheckpoint of a run"})
+  for (const char* said : {"journal of a run", "\ntime  ", " of 1e+15", "\ncollisions  ", " so far\n", "\ncomputing  ",
+                           "\ncheckpoint  ", "/series", "energy_lost", "---\ncheckpoint of a run"})
     EXPECT_TRUE(has(inspected.out, said)) << inspected.out;
   EXPECT_FALSE(has(inspected.out, "not whole")) << "a journal that is being written has no torn end";
 }

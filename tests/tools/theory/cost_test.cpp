@@ -67,7 +67,7 @@ TEST(ExpectedCollisions, OfACoolingGasEndWhereItClusters) {
   EXPECT_FALSE(expected_cost(scene).clustering);
   // Nothing is known of unequal masses.
   scene = parse_scene(ring, "gas.toml", {"initial.masses=[1,2]"});
-  EXPECT_TRUE(has(expected_lines(scene, expected_cost(scene)), "not known beforehand"));
+  EXPECT_TRUE(has(expected_lines(scene, expected_cost(scene)), "there is no estimate"));
 }
 
 // With what a run ends at a collapse of many particles.

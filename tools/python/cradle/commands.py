@@ -110,7 +110,11 @@ def option(name: str, value: Any) -> list[str]:
 
 
 def compute(command, ending, scene, set, options, *, output: str | os.PathLike | None = None, force: bool = False,
-            seed: int | None = None, threads: int | None = None, progress: bool | Show | None = None) -> Result:
+            seed: int | None = None, threads: int | None = None, progress: bool | Show | None = None,
+            **unknown) -> Result:
+    if unknown:
+        raise Error(f"{command}: no such argument (found {', '.join(unknown)}): give keys of the scene in set, "
+                    f"set={{'law.restitution': 0.9}} for instance; help(cradle.{command}) has the arguments", BAD_INPUT)
     with scene_file(scene) as (path, name):
         output = path_of(output, "output") if output is not None else name + ending
         words = [command, path, *map(str, options), "-o", output, *option("--seed", seed), *settings(set)]

@@ -18,6 +18,10 @@ def draw_energy(result, theory, units, panels):
     top, below = panels(2, sharex=True, figsize=(5.6, 5.4), height_ratios=(3, 2), letters=True)
     energy = series["energy"] / units.energy
     top.plot(time, energy, color=BLUE, lw=1.6, label="simulation")
+    if "potential_energy" in series:
+        total = energy + series["potential_energy"] / units.energy
+        top.plot(time, total, color=ORANGE, label="with that of gravity")
+        energy = np.concatenate([energy, total])
     cited = theory.equation("energy").replace("E_loss", r"$E_\mathrm{loss}$")
     for quantity, line, label in (("energy", ":", cited), ("energy_sticky", "--", "sticky gas")):
         t, value = theory.curve(quantity)

@@ -35,15 +35,22 @@ def draw_series(result, theory, units, panels):
     scale = {"energy": units.energy, "front_right": units.x, "cloud_width": units.x}
     shown = [(name, label) for name, label in SERIES if name in result.series
              and (name != "front_right" or name in fronts(result)) and (result.series[name]["max"] > 0).any()]
+    spreads = {name: of for name, of in result.table("ensemble/spread/series").items()
+               if np.ndim(of.get("quantile_50", np.zeros((0, 2)))) == 1}
+    shown += [(name, name.replace("_", " ")) for name in spreads if name not in dict(shown)]
     axes = panels.stacked(len(shown), height=2.0, sharex=True)
     replicas = len(result.replicas.get("index", ()))
     left = min((int(counts[-1]) for name, _ in shown if (counts := result.series[name].get("count")) is not None),
                default=replicas)
     note(axes[0], (f"{replicas} replicas; " if replicas else "") + (f"{left} at the end; " if left < replicas else "")
-         + "bands: standard error, extremes")
+         + "bands: standard error, extremes" + ("; orange: spread" if spreads else ""))
     axes[-1].set(xlabel=units.time_label(), xlim=(time[0], time[-1]))
     for ax, (name, label) in zip(axes, shown):
         band(ax, time, result.series[name], scale.get(name, 1), BLUE, lw=1.2)
+        if name in spreads:
+            low, *between, high = (spreads[name][f"quantile_{k:02}"] / scale.get(name, 1) for k in (5, 25, 75, 95))
+            ax.fill_between(time, *between, color=ORANGE, alpha=0.35, lw=0, label="half of the replicas")
+            ax.plot(time, np.transpose([low, high]), ":", color=ORANGE, lw=1, label=["90 % of them", None])
         ax.set_ylabel(units.energy_label() if name == "energy" else
                       label + (units.label("", r"$\,/\,l$") if scale.get(name) == units.x else ""))
     on_ring = result.word("initial", "type") == "ring"

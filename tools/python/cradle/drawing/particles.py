@@ -5,6 +5,7 @@ import numpy as np
 from .style import BLUE, ORANGE, RED, shaded
 
 FEW_PARTICLES = 20       # up to here every particle has a path of its own
+MARKED = 40              # points of a line; marks of more would cover it
 
 
 def few(result):
@@ -12,30 +13,45 @@ def few(result):
 
 
 def pictures(result, theory, units):
-    if few(result) and not theory.curve("front_position")[0].size:
+    if (few(result) or one_falls(result)) and not theory.curve("front_position")[0].size:
         yield "particles", draw_particles, result, units
+
+
+def one_falls(result):
+    """Whether a single particle is under gravity: then its potential energy is its height."""
+    return "potential_energy" in result.means and len(result.scene["initial"].get("x", ())) == 1
+
+
+def parted(path, length):
+    """The points (t, x) of a path, which ends where it crosses the seam of a ring and begins anew behind it."""
+    seam = np.flatnonzero(np.abs(np.diff(path[:, 1])) > length / 2) + 1
+    return np.insert(path, seam, np.nan, axis=0)
 
 
 def draw_particles(result, units, panels):
     """Paths, energy and collisions (at a collapse collisions alone), and how intervals (from events) or gaps
     shrink."""
     shrinking = {"interval", "closing_speed"} <= result.events.keys()
-    gaps = not shrinking and len(result.snapshots) > 1
+    gaps = not shrinking and len(result.snapshots) > 1 and len(result.snapshots[0]["x"]) > 1
     axes = panels.stacked(2 + (shrinking or gaps))
-    paths = {}
-    for snapshot in result.snapshots:
+    series, paths = result.means, {}
+    if one_falls(result):
+        weight = -result.setting("gravity", "acceleration") * float(result.scene["initial"].get("m", [1])[0])
+        axes[0].plot(series["time"], series["potential_energy"] / weight, color=BLUE)
+    for snapshot in () if one_falls(result) else result.snapshots:
         for particle, x in zip(snapshot["index"], snapshot["x"]):
             paths.setdefault(int(particle), []).append((snapshot["time"], x))
     for (particle, path), colour in shaded(sorted(paths.items())):
-        axes[0].plot(*(np.array(path) / (units.t, units.x)).T, "o-", ms=3, color=colour, label=f"particle {particle}")
+        path = parted(np.array(path), result.setting("initial", "length", 0.0) or np.inf)
+        axes[0].plot(*(path / (units.t, units.x)).T, "o-" if len(path) <= MARKED else "-", ms=3,
+                     color=colour, label=f"particle {particle}")
     left = time_to_collapse(result) if shrinking else None
-    series = result.means
     for name, line in (("front_left", ":"), ("front_right", "--")):
-        if name in series:
+        if name in series and not one_falls(result):
             axes[0].plot(series["time"] / units.t, series[name] / units.x, line, color="k", lw=0.8, zorder=0,
                          label="outermost" if line == ":" else None)
     axes[0].set(xlabel=units.time_label(), ylabel=units.position_label())
-    if axes[0].get_lines() and len(paths) <= 8:
+    if paths and len(paths) <= 8:
         axes[0].legend(ncol=2)
     if left is not None:
         draw_before_collapse(axes[1], left, units)
@@ -44,7 +60,13 @@ def draw_particles(result, units, panels):
         falling = "potential_energy" in series  # then energy changes between collisions too
         axes[1].plot(time, series["energy"] / units.energy, color=BLUE,
                      drawstyle="default" if falling else "steps-post")
-        axes[1].set(ylabel=units.energy_label(), xlabel=units.time_label(), ylim=(0, None))
+        least = 0.0
+        if falling:
+            total = (series["energy"] + series["potential_energy"]) / units.energy
+            axes[1].plot(time, total, color=ORANGE, label="with that of gravity")
+            axes[1].get_lines()[0].set_label("kinetic")
+            least = min(total.min(), 0.0)
+        axes[1].set(ylabel=units.energy_label(), xlabel=units.time_label(), ylim=(least, None))
         if "collisions" in series:
             other = axes[1].twinx()
             other.plot(time, series["collisions"], color=RED, ls="--", drawstyle="steps-post")
@@ -63,7 +85,8 @@ def draw_particles(result, units, panels):
         for pair in range(min(len(s["gap"]) for s in result.snapshots)):
             points = [(s["time"], s["gap"][pair]) for s in result.snapshots if s["gap"][pair] > 0]
             points = np.array(points).reshape(-1, 2)
-            axes[2].semilogy(points[:, 0] / units.t, points[:, 1] / units.x, "o-", ms=3, label=f"gap {pair}")
+            axes[2].semilogy(*(points / (units.t, units.x)).T, "o-" if len(points) <= MARKED else "-", ms=3,
+                             label=f"gap {pair}")
         axes[2].set(xlabel=units.time_label(), ylabel=units.label("gap", r"gap$\,/\,l$"))
 
 

@@ -2,7 +2,7 @@
 proof in time: the smallest gap, and the radii of positions and gaps."""
 import numpy as np
 
-from .style import BLUE, GREEN, ORANGE, plt
+from .style import BLUE, GREEN, ORANGE, note, plt
 
 
 def pictures(result, _theory, _units):
@@ -25,9 +25,10 @@ def draw_trust(result, panels):
             ax.plot(run["time"], run[f"{name}_digits"], line, color=colour, label=label)
             if not run["right_to_end"]:
                 ax.axvline(run["collisions_right_until"], color=colour, linestyle=line, linewidth=0.8)
-        ax.set(ylabel=f"digits of the {name}", ylim=(0, None))
+        ax.set(ylabel=f"right digits of the {name}", ylim=(0, None))
     axes[0].legend(fontsize="small", title=f"against {result.trust[-1]['precision']}", ncols=2)
-    axes[1].set_xlabel("time ($t$)   (vertical lines: until when the sequence of collisions is right)")
+    note(axes[0], "vertical lines: up to there the sequence of collisions is right")
+    axes[1].set_xlabel("time ($t$)")
 
 
 def draw_certificate(result, units, panels):

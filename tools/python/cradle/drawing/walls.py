@@ -2,13 +2,14 @@
 Kadanoff, Phys. Rev. Lett. 74, 1268, 1995)."""
 import numpy as np
 
+from .particles import MARKED
 from .style import BLUE, GREY, ORANGE
 
 FEW = 12  # snapshots, for quantiles against time to mean something
 
 
 def pictures(result, _theory, _units):
-    if given_by(result.means) and len(result.snapshots) >= FEW:
+    if given_by(result.means) and len(result.snapshots) >= FEW and len(result.snapshots[0]["x"]) > 1:
         yield "walls", draw, result
 
 
@@ -27,12 +28,13 @@ def draw(result, panels):
     share = np.array([e.max() / e.sum() if e.sum() > 0 else np.nan for e in energies])
     axes[0].fill_between(times, places[:, 0], places[:, 2], color=BLUE, alpha=0.3, lw=0, label="80 % of the particles")
     axes[0].plot(times, places[:, 1], color=BLUE, lw=1.2, label="median")
-    axes[0].plot(times, fastest, "o", color=ORANGE, ms=3, label="the particle with most energy")
+    axes[0].plot(times, fastest, "o", color=ORANGE, ms=3 if len(times) <= MARKED else 1.5,
+                 label="the particle with most energy")
     axes[0].set_ylabel("position $x$ ($l$)")
     low, high = axes[0].get_ylim()
     axes[0].set_ylim(low - 0.2 * (high - low), high)  # room for the legend
     axes[0].legend(loc="lower left", ncol=3, fontsize=7)
-    axes[1].plot(times, share, "o-", color=ORANGE, ms=3, lw=0.8)
+    axes[1].plot(times, share, "o-" if len(times) <= MARKED else "-", color=ORANGE, ms=3, lw=0.8)
     axes[1].axhline(1 / len(snapshots[-1]["x"]), color=GREY, lw=0.8, ls="--", label="equal shares")
     axes[1].set(ylabel="share of the energy\nthat one particle has", ylim=(0, 1.05))
     axes[1].legend(loc="center right", fontsize=7)

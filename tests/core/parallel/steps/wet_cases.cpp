@@ -56,7 +56,7 @@ TEST_F(WetSteps, MakeOneOfSeveralLaws) {
 // Time slabs in which many particles merge: cells fall vacant in long rows, and what a step leaves to the next one is
 // listed once.
 TEST_F(WetSteps, MakeACoolingGasInWhichNearlyAllMerge) {
-  for (const std::uint64_t seed : {1, 2, 3, 4}) {
+  for (std::uint64_t seed = 1; seed < 5; ++seed) {
     const Scene<double> ring =
         std::make_shared<Ring<double>>(8000, 8000., 1., gaussian_velocity(seed, 0), uniform_displacement(0, seed, 0));
     const SlabsMade made = expect_same_in_steps<Chain>(ring, Law(0.1), std::vector<int>{1000},

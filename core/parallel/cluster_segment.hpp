@@ -111,12 +111,15 @@ template <Real T> class ClusterSegment {
     more_right_ = range.unheld_right() > static_cast<ParticleIndex>(along_right_);
     line_.gaps.resemble(cells.gaps, last_ + 3);
     if (report.observe) place_.resize(last_ + 1);
-    for (Slot s = first_ + along_left_; s <= last_ - along_right_; ++s, from = cells.right(from)) {
-      line_.gaps.copy(cells.gaps, from, s, 1);
-      if (report.observe) place_[s] = chain.place(from);
-      if (ring && cells.right(from) <= from && s < last_) seam_ = s;
-      if (from == range.front_left()) reached_left_ = s;
-      if (from == range.front_right()) reached_right_ = s;
+    for (Slot s = first_ + along_left_, end = last_ - along_right_ + 1, gaps = 0; s < end; s += gaps) {
+      for (gaps = 1; s + gaps < end && cells.right(from + gaps - 1) == from + gaps; ++gaps) continue;
+      line_.gaps.copy(cells.gaps, from, s, gaps);
+      for (std::size_t k = 0; report.observe && k < gaps; ++k) place_[s + k] = chain.place(from + k);
+      if (range.front_left() - from < gaps) reached_left_ = s + (range.front_left() - from);
+      if (range.front_right() - from < gaps) reached_right_ = s + (range.front_right() - from);
+      const Slot next = cells.right(from + gaps - 1);
+      if (ring && next < from && s + gaps < end) seam_ = s + gaps - 1;
+      from = next;
     }
     farthest_ = reached_right_;
     take_along(chain, report.observe);
@@ -149,28 +152,36 @@ template <Real T> class ClusterSegment {
     report.left_front.taken = left_end_ ? static_cast<ParticleIndex>(begin - s) : 0;
     report.right_front.taken =
         static_cast<ParticleIndex>(right_end_ ? std::max(std::min(farthest_ + 1, last_), end) - end : 0);
-    // The seam may have been taken over by what is left of it.
-    const bool behind_seam = own.first + own.gaps > chain.last() + 1 && seam_ < own_first_;
-    Slot there = behind_seam ? chain.first() : own.first - static_cast<Slot>(report.left_front.taken), row = there;
-    const auto end_row = [&] {
-      if (there > row) report.cells.push_back({row, there - row});
+    // Owned slots, up to the chain's last one and from its first one on.
+    const Slot first_end = std::min(own.first + own.gaps, chain.last() + 1),
+               second_end = chain.first() + (own.first + own.gaps - first_end);
+    const auto vacate = [&](Slot from, Slot to) {
+      for (; from < to; ++from) after.put(from, {{}, T(0), T(1), 0, from, from});
     };
-    for (bool more = true; more; s = right(s)) {
-      after.copy(line_.gaps, s, there, 1);
-      after[there].left = there - 1;
-      after[there].right = there + 1;
-      if (s == reached_left_) report.left_front.slot = there;
-      if (s == reached_right_) report.right_front.slot = there;
-      ++there;
-      more = s != last;
-      if (s == seam_ && more) end_row(), row = there = chain.first();
+    Slot there = own.first - static_cast<Slot>(report.left_front.taken);
+    const auto go_on_behind_seam = [&] { vacate(there, first_end), there = chain.first(); };
+    // The seam may have been taken over by what is left of it.
+    bool behind_seam = second_end > chain.first() && seam_ < own_first_;
+    if (behind_seam) go_on_behind_seam();
+    for (bool more = true; more;) {
+      Slot to = s;
+      while (to != last && to != seam_ && right(to) == to + 1) ++to;
+      const std::size_t gaps = to + 1 - s;
+      after.copy(line_.gaps, s, there, gaps);
+      for (std::size_t k = 0; k < gaps; ++k)
+        after[there + k].left = there + k - 1, after[there + k].right = there + k + 1;
+      if (reached_left_ - s < gaps) report.left_front.slot = there + (reached_left_ - s);
+      if (reached_right_ - s < gaps) report.right_front.slot = there + (reached_right_ - s);
+      if (report.cells.empty() || report.cells.back().first + report.cells.back().count != there)
+        report.cells.push_back({there, 0});
+      report.cells.back().count += gaps;
+      there += gaps;
+      more = to != last;
+      s = right(to);
+      if (to == seam_ && more) go_on_behind_seam(), behind_seam = true;
     }
-    end_row();
-    each_slot(chain, own, [&](Slot slot) {
-      for (const auto& [first, count] : report.cells)
-        if (slot - first < count) return;
-      after.put(slot, {{}, T(0), T(1), 0, slot, slot});
-    });
+    vacate(there, behind_seam ? second_end : first_end);
+    if (!behind_seam) vacate(chain.first(), second_end);
   }
 
   // False where the time slab is for the plain loop.

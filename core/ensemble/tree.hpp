@@ -51,6 +51,16 @@ struct TreeNode {
   bool operator==(const TreeNode&) const = default;
 };
 
+/// Adds the node of the replicas that follow, and combines nodes as the tree does.
+inline void append(std::vector<TreeNode>& nodes, TreeNode next) {
+  for (; !nodes.empty() && nodes.back().level == next.level; nodes.pop_back()) {
+    TreeNode& before = nodes.back();
+    if ((before.first ^ next.first) != next.range().count) break;  // no siblings
+    next = {before.first, next.level + 1, combine(std::move(before.moments), next.moments)};
+  }
+  nodes.push_back(std::move(next));
+}
+
 /// All functions may be called from several threads at once.
 class MomentTree {
  public:

@@ -205,7 +205,7 @@ void EnsembleState::read(const Result& result, const std::string& file) {
   }
   kept_ = separated_tables(result, name(""), file);
   for (std::size_t k = 0; k < spreads_.size(); ++k)
-    take(SpreadRecord{k, get<std::uint64_t>(get(result, spread_group(spreads_[k]).name, file), "counts", file)}, file);
+    take_counts(k, get<std::uint64_t>(get(result, spread_group(spreads_[k]).name, file), "counts", file), file);
 }
 
 }  // namespace cradle::tools

@@ -30,9 +30,19 @@ template <class List> class MeasurementsOf;
 template <class... Each> class MeasurementsOf<MeasurementList<Each...>> {
  public:
   /// `exact`: whether texts of numbers with all digits are wanted.
-  MeasurementsOf(const Scene& scene, AnyEngine& engine, const Schedule& plan, bool exact) : scene_(scene), plan_(plan) {
+  MeasurementsOf(const Scene& scene, AnyEngine& engine, const Schedule& plan, bool exact)
+      : scene_(scene), engine_(engine), plan_(plan), exact_(exact) {
     with_rows(all_, [&]<class M>(std::optional<M>& measurement, std::size_t row) {
-      if (M::row.wanted(scene)) measurement.emplace(Measured{scene, engine, plan.of[row].samples.size(), exact});
+      if (M::row.wanted(scene)) measurement.emplace(measured(row));
+    });
+  }
+  /// As just made, for an engine that begins again.
+  void begin_again() {
+    with_rows(all_, [&]<class M>(std::optional<M>& measurement, std::size_t row) {
+      if constexpr (requires { measurement->begin_again(); })
+        measurement->begin_again();
+      else if (measurement)
+        measurement.emplace(measured(row));
     });
   }
 
@@ -102,6 +112,8 @@ template <class... Each> class MeasurementsOf<MeasurementList<Each...>> {
   }
 
  private:
+  Measured measured(std::size_t row) const { return {scene_, engine_, plan_.of[row].samples.size(), exact_}; }
+
   static constexpr std::size_t most_rows = 1 << 14;  // that wait for the sink
 
   static void made(auto& m, const Counts& counts) {
@@ -121,7 +133,9 @@ template <class... Each> class MeasurementsOf<MeasurementList<Each...>> {
   }
 
   const Scene& scene_;
+  AnyEngine& engine_;
   const Schedule& plan_;
+  bool exact_;
   std::tuple<std::optional<Each>...> all_;
 };
 using Measurements = MeasurementsOf<AllMeasurements>;

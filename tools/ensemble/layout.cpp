@@ -105,8 +105,15 @@ ReplicaLayout replica_layout(const Scene& scene) {
 }
 
 ReplicaRow ReplicaLayout::row(std::uint64_t index, const RunOutcome& run) const {
-  const RunEnd end = end_row(run.end).status == Exit::collapse ? RunEnd::collapsed : run.end;
-  ReplicaRow row{index, end, run.collisions, run.merges, std::vector<double>(numbers.size(), missing)};
+  ReplicaRow row;
+  put_row(index, run, row);
+  return row;
+}
+
+void ReplicaLayout::put_row(std::uint64_t index, const RunOutcome& run, ReplicaRow& row) const {
+  row.index = index, row.collisions = run.collisions, row.merges = run.merges;
+  row.outcome = end_row(run.end).status == Exit::collapse ? RunEnd::collapsed : run.end;
+  row.numbers.assign(numbers.size(), missing);
   row.numbers.front() = run.energy;
   const auto put = [&](std::string_view name, double value) {
     for (std::size_t k = 1; k < numbers.size(); ++k)
@@ -115,7 +122,6 @@ ReplicaRow ReplicaLayout::row(std::uint64_t index, const RunOutcome& run) const 
   };
   if (run.collapsed_at) put(collapse_time, *run.collapsed_at);
   for (const auto& [name, value] : run.summary) put(name, value);
-  return row;
 }
 
 std::vector<double> ReplicaLayout::values(const RunOutcome& run) const {

@@ -47,6 +47,7 @@ ReplicaRow ReplicaTable::operator[](std::size_t k) const {
 std::vector<std::size_t> ReplicaTable::order() const {
   std::vector<std::size_t> rows(size());
   std::iota(rows.begin(), rows.end(), std::size_t{0});
+  if (std::ranges::is_sorted(rows, {}, [&](std::size_t row) { return index(row); })) return rows;
   std::ranges::sort(rows, {}, [&](std::size_t row) { return integers_[row * integers]; });
   return rows;
 }
@@ -160,7 +161,9 @@ void EnsembleState::check_replicas(const std::string& file) const {
 void EnsembleState::put(EnsembleRecord& record, const ReplicaRow& row, const std::vector<double>& values) const {
   if (record.rows.size() == 0) record.rows = ReplicaTable(table_.numbers());
   record.rows.add(row);
-  append(record.nodes, {row.index, 0, moments_of(values)});
+  Moments memory;
+  if (!record.left_over.empty()) memory = std::move(record.left_over.back()), record.left_over.pop_back();
+  append(record.nodes, {row.index, 0, moments_of(values, std::move(memory))}, record.left_over);
   for (const auto& [quantity, counts] : spreads_) {
     const auto of_replica = std::span(values).subspan(quantity.offset, quantity.size());
     record.to_spread.insert(record.to_spread.end(), of_replica.begin(), of_replica.end());
@@ -171,7 +174,7 @@ void EnsembleState::put_failure(EnsembleRecord& record, ReplicaIndex replica, st
   std::replace(message.begin(), message.end(), '\n', ' ');  // one line each in result files
   if (record.rows.size() == 0) record.rows = ReplicaTable(table_.numbers());
   record.rows.add({replica, RunEnd::failed, 0, 0, {}});
-  append(record.nodes, {replica, 0, {}});
+  append(record.nodes, {replica, 0, {}}, record.left_over);
   record.messages.emplace(replica, std::move(message));
 }
 

@@ -34,6 +34,9 @@ class ReplicaTable {
   ReplicaTable part(std::size_t first, std::size_t last) const;
   ReplicaIndex index(std::size_t k) const { return integers_[k * integers]; }
   RunEnd outcome(std::size_t k) const { return static_cast<RunEnd>(integers_[k * integers + 1]); }
+  double number(std::size_t k, std::size_t which) const { return numbers_[k * width_ + which]; }
+  std::uint64_t collisions(std::size_t k) const { return integers_[k * integers + 2]; }
+  std::uint64_t merges(std::size_t k) const { return integers_[k * integers + 3]; }
   /// The positions of the rows, sorted by replica index.
   std::vector<std::size_t> order() const;
 
@@ -57,6 +60,7 @@ struct EnsembleRecord {
   std::vector<double> to_spread = {};                    // numbers that the spreads do not count yet, for each replica
   std::vector<std::vector<std::uint64_t>> spreads = {};  // counts
   KeptReplicas kept = {};
+  std::vector<Moments> left_over = {};  // memory for more of them
 
   static auto state(auto& self) {
     return std::tie(self.point, self.rows, self.messages, self.nodes, self.to_spread, self.spreads, self.kept);

@@ -1,6 +1,7 @@
 // The list of measurements, and those that a run holds. To add one, write its file and add it here.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <tuple>
 
@@ -46,20 +47,26 @@ template <class... Each> class MeasurementsOf<MeasurementList<Each...>> {
     });
   }
 
-  /// Whether any is due that needs all particles.
-  bool need_particles(const Number& time) const {
-    return any([&](const auto& m, std::size_t row) { return m.row.of_particles && plan_.due(row, time); });
+  /// Asks the plan what is due now, for the next three. Returns whether anything is due that needs all particles.
+  bool come_to(const Number& time) {
+    bool need_particles = false;
+    each([&](auto& m, std::size_t row) {
+      due_[row] = plan_.due(row, time);
+      need_particles = need_particles || (m.row.of_particles && due_[row]);
+    });
+    return need_particles;
   }
+  bool series_is_due() const { return due_.front().sample; }
   void find(const Moment& now, const Stopped& stopped) {
     each([&](auto& m, std::size_t row) {
       if constexpr (requires { m.find(now, stopped); })
-        if (plan_.due(row, now.time.exact)) m.find(now, stopped);
+        if (due_[row]) m.find(now, stopped);
     });
   }
   void record(const Moment& now, TableSink& put) {
     each([&](auto& m, std::size_t row) {
-      if constexpr (requires(const Due& due) { m.record(now, due, put); })
-        if (const Due due = plan_.due(row, now.time.exact)) m.record(now, due, put);
+      if constexpr (requires { m.record(now, due_[row], put); })
+        if (due_[row]) m.record(now, due_[row], put);
     });
   }
   void record_last(const Moment& now, TableSink& put) {
@@ -137,6 +144,7 @@ template <class... Each> class MeasurementsOf<MeasurementList<Each...>> {
   const Schedule& plan_;
   bool exact_;
   std::tuple<std::optional<Each>...> all_;
+  std::array<Due, sizeof...(Each)> due_ = {};  // at the time that the run has come to
 };
 using Measurements = MeasurementsOf<AllMeasurements>;
 

@@ -177,8 +177,8 @@ class EngineRun final : public SceneRun {
 
   RunTime start_, time_;
   Number end_;
-  bool at_collision_ = false;  // the state is the one right after the last collision
-  std::unique_ptr<Moment> now_;
+  bool at_collision_ = false;    // the state is the one right after the last collision
+  std::unique_ptr<Moment> now_;  // for who reads the run, or of the last sample of a run for statistics
   std::optional<Error> failed_;
 };
 

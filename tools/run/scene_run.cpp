@@ -59,15 +59,15 @@ std::unique_ptr<AnyEngine> EngineRun::engine() {
 }
 
 bool EngineRun::sample_at(const Number& time) {
-  const std::unique_ptr<Moment> moment = engine_->moment(plan_.meant(time));
+  std::unique_ptr<Moment> moment = engine_->moment(plan_.meant(time));
   const Moment& now = *moment;
-  if (measurements_.need_particles(time)) guards_.require_held(now, true);
+  if (measurements_.come_to(time)) guards_.require_held(now, true);
   try {
     measurements_.find(now, [this] { return stopped(); });
   } catch (const WalkStopped&) {
     return false;
   }
-  if (plan_.series().hold(time)) guards_.require_held(now, false);
+  if (measurements_.series_is_due()) guards_.require_held(now, false);
   measurements_.record(now, sink_);
   guards_.check(now, !(time < plan_.last()));
   inspected_ = time;
@@ -77,15 +77,15 @@ bool EngineRun::sample_at(const Number& time) {
     keep(time);
   else if (measurements_.many_rows())
     put_rows();
+  if (sink_.for_statistics()) now_ = std::move(moment);
   return true;
 }
 
 // Of a run for statistics.
 void EngineRun::end_in_numbers(Status status) {
-  const bool reached = status == Status::reached;
-  const std::unique_ptr<Moment> moment =
-      engine_->moment(reached ? RunTime(plan_.last()) : RunTime(engine_->last_collision_time()));
-  const Moment& now = *moment;
+  const bool reached = status == Status::reached;  // with a sample at the end
+  if (!reached) now_ = engine_->moment(engine_->last_collision_time());
+  const Moment& now = *now_;
   if (!reached) {
     guards_.require_between_walls(now);
     guards_.require_held(now, false);

@@ -12,20 +12,32 @@
 // ensemble/T    as `cradle ensemble --threads T`: journal, statistics, file
 // in_turn, interleaved   engines without samples
 //
+// small/N   a ring of N particles, Gaussian velocities, restitution 0.9, cut-off 1e-6, to t = 10: the column "each" is
+//           the processor time of a replica (--benchmark_filter=small)
+//   plain     a loop that scans all gaps for the next collision, and two samples of the energy
+//   engine    Cradle's engine, without samples
+//   ensemble  as `cradle ensemble --threads 1`, two samples: journal, statistics, file
+//
 // Times are by the clock: use an idle machine, and compare ratios of medians.
 
 #include <benchmark/benchmark.h>
 
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
+#include "cradle/core/base/counter_rng.hpp"
 #include "cradle/core/chains/cluster_chain.hpp"
 #include "cradle/core/chains/gap_chain.hpp"
 #include "cradle/core/engine/simulation.hpp"
+#include "cradle/core/initial/ring.hpp"
 #include "cradle/core/initial/rows.hpp"
 #include "cradle/tools/ensemble/ensemble.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
@@ -46,6 +58,17 @@ void enter(const std::string& name, int replicas, const std::function<void()>& a
 
 // ---- the program
 
+void run_ensemble(const tools::Scene& scene, int replicas, unsigned threads) {
+  const auto file = std::filesystem::temp_directory_path() / "cradle-bench-ensemble.h5";
+  std::filesystem::remove(file);
+  tools::EnsembleOptions options;
+  options.replicas = {0, static_cast<std::uint64_t>(replicas)};
+  options.threads = threads;
+  options.progress = tools::ProgressLine::Show::never;
+  tools::run_ensemble(scene, options, file);
+  std::filesystem::remove(file);
+}
+
 void enter_scene(const std::string& of, const tools::Scene& scene, int replicas) {
   enter(of + "/runs", replicas, [=] {
     tools::Scene replica = scene;
@@ -55,16 +78,7 @@ void enter_scene(const std::string& of, const tools::Scene& scene, int replicas)
     }
   });
   for (const unsigned threads : {1U, 2U})
-    enter(of + "/ensemble/" + std::to_string(threads), replicas, [=] {
-      const auto file = std::filesystem::temp_directory_path() / "cradle-bench-ensemble.h5";
-      std::filesystem::remove(file);
-      tools::EnsembleOptions options;
-      options.replicas = {0, static_cast<std::uint64_t>(replicas)};
-      options.threads = threads;
-      options.progress = tools::ProgressLine::Show::never;
-      tools::run_ensemble(scene, options, file);
-      std::filesystem::remove(file);
-    });
+    enter(of + "/ensemble/" + std::to_string(threads), replicas, [=] { run_ensemble(scene, replicas, threads); });
 }
 
 // ---- engines
@@ -112,6 +126,89 @@ template <class Make> void enter_engine(const std::string& of, int replicas, dou
   });
 }
 
+// ---- many small systems
+
+constexpr double restitution = 0.9, cutoff = 1e-6, until = 10;
+
+// What one would write by hand. Returns the energy, and adds the collisions.
+double plain_loop(int n, int replica, std::uint64_t& collisions) {
+  const auto count = static_cast<std::size_t>(n);
+  std::vector<double> v(count), gap(count, 1.);
+  double mean = 0;
+  for (std::size_t i = 0; i < count; ++i)  // Marsaglia's polar method
+    for (std::uint64_t attempt = 1; v[i] == 0; ++attempt) {
+      const std::uint64_t bits = cradle::random_bits(0, static_cast<std::uint64_t>(replica), i | attempt << 56);
+      const double x = (static_cast<double>(bits >> 32) + 0.5) * 0x1p-31 - 1;
+      const double y = (static_cast<double>(bits & 0xFFFFFFFF) + 0.5) * 0x1p-31 - 1, square = x * x + y * y;
+      if (square < 1) v[i] = x * std::sqrt(-2 * std::log(square) / square);
+    }
+  for (const double each : v) mean += each / n;
+  for (double& each : v) each -= mean;
+  const auto closing = [&](std::size_t i) { return v[i] - v[i + 1 < count ? i + 1 : 0]; };
+  const auto energy = [&] {
+    double sum = 0;
+    for (const double each : v) sum += each * each / 2;
+    return sum;
+  };
+  benchmark::DoNotOptimize(energy());
+  for (double left = until;;) {
+    double next = left;
+    std::size_t hit = count;
+    for (std::size_t i = 0; i < count; ++i)
+      if (closing(i) > 0 && gap[i] / closing(i) < next) next = gap[i] / closing(i), hit = i;
+    if (hit == count) return energy();
+    for (std::size_t i = 0; i < count; ++i) gap[i] -= closing(i) * next;
+    const double w = closing(hit), handed = (1 + (w < cutoff ? 1 : restitution)) / 2 * w;
+    v[hit] -= handed, v[hit + 1 < count ? hit + 1 : 0] += handed;
+    gap[hit] = 0;
+    left -= next;
+    ++collisions;
+  }
+}
+
+double engine_alone(int n, int replica, std::uint64_t& collisions) {
+  const auto ring = std::make_shared<cradle::Ring<double>>(
+      n, static_cast<double>(n), 1., cradle::gaussian_velocity(0, static_cast<std::uint64_t>(replica)),
+      cradle::uniform_displacement(0, 0, 0));
+  cradle::Simulation run(cradle::Inelastic<double>(restitution, cutoff), cradle::GapChain<double>(ring, 0.));
+  run.advance(until);
+  collisions += run.counts().collisions;
+  return run.kinetic_energy(until);
+}
+
+void enter_small(int n) {
+  const int replicas = 300'000 / (n + 10);
+  const auto enter_each = [=](const std::string& name, const std::function<void()>& all) {
+    benchmark::RegisterBenchmark(("small/" + std::to_string(n) + "/" + name).c_str(),
+                                 [=](benchmark::State& state) {
+                                   for (auto iteration : state) all();
+                                   state.counters["each"] =
+                                       benchmark::Counter(replicas, benchmark::Counter::kIsIterationInvariantRate |
+                                                                        benchmark::Counter::kInvert);
+                                 })
+        ->MeasureProcessCPUTime()
+        ->Unit(benchmark::kMillisecond);
+  };
+  for (const auto& [name, run] : {std::pair{"plain", &plain_loop}, {"engine", &engine_alone}})
+    enter_each(name, [=, run = run] {
+      static std::map<int, std::uint64_t> expected;  // rounding moves one of thousands across the end
+      std::uint64_t collisions = 0;
+      double energy = 0;
+      for (int k = 0; k < replicas; ++k) energy += run(n, k, collisions);
+      benchmark::DoNotOptimize(energy);
+      const std::uint64_t others = expected.try_emplace(n, collisions).first->second;
+      if (std::abs(static_cast<double>(collisions) / static_cast<double>(others) - 1) < 1e-3) return;
+      std::fprintf(stderr, "small/%d: the engines do not agree: times mean nothing\n", n);
+      std::exit(1);
+    });
+  const tools::Scene scene = tools::parse_scene(
+      "law = { type = 'inelastic', restitution = 0.9, cutoff = 1e-6 }\nrun.until = 10\noutput.series.points = 2\n"
+      "initial = { type = 'ring', particles = " +
+          std::to_string(n) + ", length = " + std::to_string(n) + ", variance = 1, seed = 0 }\n",
+      "small.toml");
+  enter_each("ensemble", [=] { run_ensemble(scene, replicas, 1); });
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -135,6 +232,7 @@ int main(int argc, char** argv) {
     return cradle::Simulation(cradle::Inelastic<double>(0.999, 1e-5),
                               cradle::GapChain<double>(rows(8000, replica), 0.0));
   });
+  for (const int n : {3, 10, 30, 100, 1000}) enter_small(n);
   benchmark::RunSpecifiedBenchmarks();
   benchmark::Shutdown();
 }

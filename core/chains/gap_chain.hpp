@@ -50,6 +50,13 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain : public Gap
   GapChain(std::shared_ptr<const Particles<T>> particles, const T& start, bool hold_all = false)
       : GapChain(particles, start, hold_all ? particles->gaps() : particles->gaps_in_motion()) {}
 
+  // The chain of other particles, in the memory of this one.
+  void begin_again(std::shared_ptr<const Particles<T>> particles) {
+    const T start = Ends::start();
+    const GapRange held = particles->gaps_in_motion();
+    *this = GapChain(std::move(particles), start, held, line_.gaps.leave());
+  }
+
   // ---- events (inlined by force, see gap_line.hpp)
   template <class Law>
   [[gnu::always_inline]] CollisionResult<T> collide(const Law& law, Slot s, const T& time) requires(Law::bounces_only) {
@@ -124,8 +131,9 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain : public Gap
   using Ends::line_, Ends::range_, Ends::particles_, Ends::memory_, Ends::walls_, Ends::wall_gaps_, Ends::left_;
   using Ends::right_, Ends::centre_, Ends::fastest_, Ends::slot_in_pile, Ends::flight, Ends::lay_out;
 
-  GapChain(std::shared_ptr<const Particles<T>> particles, const T& start, GapRange held)
-      : Ends(std::move(particles), start, held) {
+  GapChain(std::shared_ptr<const Particles<T>> particles, const T& start, GapRange held,
+           typename Line::Gaps::Memory memory = {})
+      : Ends(std::move(particles), start, held, std::move(memory)) {
     lay_out({}, held.last - held.first + 1);
     for (Slot s = first(); s <= last(); ++s) line_.load(s, *particles_, T(0));
     foresee_walls();

@@ -29,8 +29,8 @@ template <Real T, class MassesOf> class GapLine {
   static constexpr bool watched = Watched<Masses>;
   using Gaps = TimedGaps<T, std::conditional_t<watched, WatchedGap<T>, Gap<T>>, true>;
 
-  GapLine(const Particles<T>& particles, const T& start)
-      : gaps(start, particles.energy_to_lose()), masses(particles),
+  GapLine(const Particles<T>& particles, const T& start, typename Gaps::Memory memory = {})
+      : gaps(start, particles.energy_to_lose(), std::move(memory)), masses(particles),
         exact_(cradle::far_apart(particles) && sums_can_be_exact<T>) {}
 
   // Makes a line like another one, with room for `slots` gaps but without any gap yet.

@@ -119,8 +119,9 @@ template <Real T, class Masses> class HeldGaps {
   Slot front_slot_right() const { return range_.front_right(); }
 
  protected:
-  HeldGaps(std::shared_ptr<const Particles<T>> particles, const T& start, GapRange held)
-      : particles_(std::move(particles)), line_(*particles_, start),
+  HeldGaps(std::shared_ptr<const Particles<T>> particles, const T& start, GapRange held,
+           typename Line::Gaps::Memory memory)
+      : particles_(std::move(particles)), line_(*particles_, start, std::move(memory)),
         range_(particles_->on_ring(), held.first - particles_->gaps().first, particles_->gaps().last - held.last, 2),
         walls_(particles_->walls()), wall_gaps_(*particles_) {
     require_particles(*particles_, start);

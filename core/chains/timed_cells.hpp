@@ -42,12 +42,26 @@ template <> struct TimedGap<double> {
 
 template <Real T, std::derived_from<TimedGap<T>> Cell> class TimedCells {
  public:
+  // What gaps are in, to be used again for others.
+  struct Memory {
+    std::vector<Cell> cells = {};
+    std::vector<T> lag = {};
+  };
+  TimedCells() = default;
+  explicit TimedCells(Memory memory) : cells_(std::move(memory.cells)), lag_(std::move(memory.lag)) {}
+  Memory leave() { return {std::move(cells_), std::move(lag_)}; }
+
   // ---- slots
   std::size_t slots() const { return cells_.size(); }
   Cell& operator[](Slot s) { return cells_[s]; }
   const Cell& operator[](Slot s) const { return cells_[s]; }
   // Changes to so many slots. Those from `first` on get the contents of `kept`, in that order.
   void lay_out(std::size_t slots, Slot first, const std::vector<Slot>& kept) {
+    if (kept.empty()) {
+      cells_.assign(slots, Cell());
+      lag_.assign(slots, T(0));
+      return;
+    }
     std::vector<Cell> cells(slots);
     std::vector<T> lag(slots, T(0));
     for (const Slot s : kept) {

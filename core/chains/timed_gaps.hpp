@@ -38,7 +38,8 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
   static constexpr bool keys_are_exact = std::same_as<T, double>;
   static constexpr bool beyond_double = may_collapse && WiderRange<T>;
 
-  TimedGaps(const T& start, const T& energy) : clock_(start), lost_(energy) {}
+  TimedGaps(const T& start, const T& energy, typename Cells::Memory memory = {})
+      : Cells(std::move(memory)), clock_(start), lost_(energy) {}
 
   // Changes to so many slots, and copies the clock, the floor, the unit of queue times and the grid of the ledger from
   // `other`. The ledger is empty; rounding is not accounted for here.

@@ -37,9 +37,13 @@ template <class Chain> class NextCollision {
 
   bool has_queue() const { return has_queue_; }
   void fill(const Chain& chain) {
-    queue = EventQueue(chain.slots(), Chain::keys_are_exact, least_queue_bits_);
+    queue.lay_out(chain.slots(), Chain::keys_are_exact, least_queue_bits_);
     has_queue_ = true;
     refill(chain);
+  }
+  void begin_again(const Chain& chain) {
+    close_calls_until_ = 0;
+    fill(chain);
   }
   void refill(const Chain& chain) {
     if (!has_queue_) return;

@@ -3,6 +3,7 @@
 // collision and the time advanced to.
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <utility>
 
@@ -69,6 +70,15 @@ template <class Chain> class Readings {
 
  protected:
   explicit Readings(Chain chain) : chain_(std::move(chain)), last_collision_(chain_.local_time(chain_.start())) {}
+
+  void begin_again(std::shared_ptr<const Particles<T>> particles) {
+    if constexpr (requires { chain_.begin_again(particles); })
+      chain_.begin_again(std::move(particles));
+    else
+      chain_ = Chain(std::move(particles), T(chain_.start()));
+    last_collision_ = chain_.local_time(chain_.start());
+    counts_ = {};
+  }
 
   // The local time of a reading. Where particles fall, the rounded time of the last collision stands for the state
   // which that collision has left: at any other time a particle that has come to rest on a floor would have fallen for

@@ -12,7 +12,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
-#include <optional>
+#include <memory>
 #include <utility>
 
 #include "cradle/core/base/state.hpp"
@@ -41,15 +41,14 @@ class Simulation : public Readings<Chain> {
   // Throws std::invalid_argument if the chain holds a number that is not finite.
   Simulation(Law law, Chain chain, Policy<T> policy = {}, int least_queue_bits = 3)
       : Read(std::move(chain)), law_(std::move(law)), policy_(std::move(policy)), next_(chain_, least_queue_bits),
-        pacing_(last_collision_, Chain::may_collapse),
-        standstill_(last_collision_, has_threshold(law_) || can_rest(), policy_.followed(chain_)),
-        target_{chain_.start(), last_collision_, last_collision_} {
-    const T least = smallest_gap(chain_);
-    const bool watched = policy_.collapse == CollapsePolicy::stop && chain_.first() <= chain_.last();
-    const T floor = watched ? watch_.begin(chain_, least) : T(std::numeric_limits<T>::min());
-    chain_.set_floor(watched && floor < policy_.stop_gap ? policy_.stop_gap : floor);
-    next_.fill(chain_);
-    aim();
+        pacing_(last_collision_, Chain::may_collapse), standstill_(last_collision_), target_{} {
+    begin();
+  }
+  // The run from the same start with other particles, in the memory of this one.
+  void begin_again(std::shared_ptr<const Particles<T>> particles) {
+    Read::begin_again(std::move(particles));
+    if (policy_.collapse == CollapsePolicy::stop) watch_ = {};
+    begin();
   }
 
   // Makes every collision at times <= until. If the status is not `reached`, the run ends at its last collision. Throws
@@ -81,8 +80,7 @@ class Simulation : public Readings<Chain> {
     return plain_only() ? make_collisions() : make_slabs(segments);
   }
 
-  // The same collision by collision, for several simulations side by side in one thread:
-  // `run.head_for(until); while (run.step()) ...; run.status()`.
+  // The same, one by one: `run.head_for(until); while (run.step()) ...; run.status()`.
   void head_for(const T& until) {
     require_ahead(until, last_collision_time());
     target_.until = until;
@@ -138,10 +136,19 @@ class Simulation : public Readings<Chain> {
     }
     ~Observed() { run.observer_ = nullptr; }
     Observed(const Observed&) = delete;
-    Observed& operator=(const Observed&) = delete;
     Simulation& run;
   };
 
+  void begin() {
+    const bool watched = policy_.collapse == CollapsePolicy::stop && chain_.first() <= chain_.last();
+    const T floor = watched ? watch_.begin(chain_, smallest_gap(chain_)) : T(std::numeric_limits<T>::min());
+    chain_.set_floor(watched && floor < policy_.stop_gap ? policy_.stop_gap : floor);
+    pacing_ = Pacing<T>(last_collision_, Chain::may_collapse);
+    standstill_ = Standstill<T>(last_collision_, has_threshold(law_) || can_rest(), policy_.followed(chain_));
+    target_.until = chain_.start();
+    next_.begin_again(chain_);
+    aim();
+  }
   bool plain_only() const { return policy_.collapse == CollapsePolicy::stop || has_memory<T>(law_) || falls(); }
 
   [[gnu::noinline]] Status make_collisions() {
@@ -150,9 +157,8 @@ class Simulation : public Readings<Chain> {
   }
   // Makes so many collisions; false if the run has come to its target before, or ends.
   [[gnu::noinline]] bool make(std::uint64_t collisions) {
-    for (; collisions > 0; --collisions)
-      if (!step()) return false;
-    return true;
+    while (collisions > 0 && step()) --collisions;
+    return collisions == 0;
   }
 
   // The slab loop: time slabs in segments; where these cannot be used, collisions in the plain loop.
@@ -199,22 +205,16 @@ class Simulation : public Readings<Chain> {
   }
   void notify_observer(Slot s) {
     const T time = chain_.due(s);
-    const auto notify = [&](const T& speed) {
-      observer_(
-          {chain_.particle(s), chain_.particle(chain_.right(s)), chain_.stamp(time), time - last_collision_, speed});
-    };
-    if constexpr (requires { chain_.closing_when_due(s); })
-      notify(chain_.closing_when_due(s));
-    else
-      notify(chain_.closing(s));
+    T speed = chain_.closing(s);
+    if constexpr (requires { chain_.closing_when_due(s); }) speed = chain_.closing_when_due(s);
+    observer_(
+        {chain_.particle(s), chain_.particle(chain_.right(s)), chain_.stamp(time), time - last_collision_, speed});
   }
   // The same for all collisions of a time slab, before the chain takes them over. If the observer throws, the plain
   // loop makes those before.
   template <class Part> void notify_observer(const std::vector<typename Part::Observed>& collisions) {
-    const Counts counts = counts_;
-    const T last = last_collision_;
-    const auto undo = [&] { counts_ = counts, last_collision_ = last; };
     std::uint64_t reported = 0;
+    const auto undo = [&, counts = counts_, last = last_collision_] { counts_ = counts, last_collision_ = last; };
     try {
       for (const auto& c : collisions) {
         const auto [left, right] = Part::particles(chain_, c);

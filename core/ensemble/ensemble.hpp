@@ -30,6 +30,17 @@ struct ReplicaAbandoned : std::exception {
   const char* what() const noexcept override { return "replica abandoned"; }
 };
 
+/// The message of the exception that is being handled.
+inline std::string message_of_exception() {
+  try {
+    throw;
+  } catch (const std::exception& error) {
+    return error.what();
+  } catch (...) {
+    return "an exception without a message";
+  }
+}
+
 /// Runs jobs: next() gives a job (a std::optional, empty at the end), replica(job) runs it, done(job, result) takes its
 /// result, failed(job, message) the message of its exception. All are called from several threads at once. cancelled()
 /// is called before every job; if it returns true, the ensemble ends when the running replicas have returned. An
@@ -40,15 +51,6 @@ void run_jobs(const E& executor, Next next, Replica replica, Done done, Failed f
   std::atomic<bool> ended = false;
   std::exception_ptr first;
   std::mutex mutex;
-  const auto message = []() -> std::string {
-    try {
-      throw;
-    } catch (const std::exception& error) {
-      return error.what();
-    } catch (...) {
-      return "an exception without a message";
-    }
-  };
   executor.run([&] {
     try {
       if (ended || (cancelled && cancelled())) return false;
@@ -60,7 +62,7 @@ void run_jobs(const E& executor, Next next, Replica replica, Done done, Failed f
       } catch (const ReplicaAbandoned&) {
         return true;
       } catch (...) {
-        failed(*job, message());
+        failed(*job, message_of_exception());
         return true;
       }
       done(*job, std::move(*result));

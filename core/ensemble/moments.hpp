@@ -40,13 +40,12 @@ struct Moments {
   bool operator==(const Moments&) const = default;
 };
 
-// The moments of one replica.
-inline Moments moments_of(std::vector<double> values) {
-  Moments one;
+// The moments of one replica, in the memory of others.
+inline Moments moments_of(const std::vector<double>& values, Moments one = {}) {
   one.replicas = 1;
   one.squares.assign(values.size(), 0);
-  one.least = one.greatest = values;
-  one.mean = std::move(values);
+  one.mean = one.least = one.greatest = values;
+  one.counts.clear();
   for (std::size_t i = 0; i < one.mean.size(); ++i) {
     if (!std::isnan(one.mean[i])) continue;
     if (one.counts.empty()) one.counts.assign(one.mean.size(), 1);

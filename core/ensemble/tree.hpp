@@ -51,12 +51,24 @@ struct TreeNode {
   bool operator==(const TreeNode&) const = default;
 };
 
+/// Adds the node of the replicas that follow, and combines nodes as the tree does. Leaves what is not needed any more.
+inline void append(std::vector<TreeNode>& nodes, TreeNode next, std::vector<Moments>& left_over) {
+  for (; !nodes.empty() && nodes.back().level == next.level; nodes.pop_back()) {
+    TreeNode& before = nodes.back();
+    if ((before.first ^ next.first) != next.range().count) break;  // no siblings
+    Moments both = combine(std::move(before.moments), next.moments);
+    left_over.push_back(std::exchange(next.moments, std::move(both)));
+    next.first = before.first, ++next.level;
+  }
+  nodes.push_back(std::move(next));
+}
+
 /// All functions may be called from several threads at once.
 class MomentTree {
  public:
   /// Adds one replica's vector; none for a failed replica.
   void add(ReplicaIndex replica, std::optional<std::vector<double>> values) {
-    add({replica, 0, values ? moments_of(std::move(*values)) : Moments()});
+    add({replica, 0, values ? moments_of(*values) : Moments()});
   }
 
   /// Adds a node from another set. Throws std::invalid_argument if the sets share replicas, if no tree has such a node,

@@ -20,8 +20,8 @@
 #include "cradle/core/base/elementary.hpp"
 #include "cradle/core/initial/mass_pattern.hpp"
 #include "cradle/core/initial/particles.hpp"
-#include "cradle/core/initial/ring.hpp"
 #include "cradle/core/initial/rows.hpp"
+#include "cradle/core/initial/velocities.hpp"
 
 namespace cradle {
 
@@ -62,13 +62,10 @@ HotParticles<T> heated(ParticleIndex first, ParticleIndex count, const T& energy
   require(count >= 2, "random velocities of ", count, " particles without momentum: give it two or more, or a kick");
   require_finite(energy, "energy of the hot particles");
   require(energy > T(0), "energy of the hot particles is not positive (", energy, "): give a positive one");
-  HotParticles<T> hot{first, {}, T(0), T(1)};
-  const VelocityDraw draw = gaussian_velocity(seed, replica);
+  HotParticles<T> hot{first, drawn(gaussian_velocity(seed, replica), first, count), T(0), T(1)};
   CompensatedSum<T> momentum, twice;
-  for (ParticleIndex particle = first; particle < first + count; ++particle) {
-    hot.pace.push_back(draw(particle));
-    momentum.add(masses.of(particle) * T(hot.pace.back()));
-  }
+  for (ParticleIndex particle = first; particle < first + count; ++particle)
+    momentum.add(masses.of(particle) * T(hot.pace[static_cast<std::size_t>(particle - first)]));
   hot.drift = momentum.value() / masses.total(first, first + count);
   for (ParticleIndex particle = first; particle < first + count; ++particle) {
     const T v = hot.velocity(particle);

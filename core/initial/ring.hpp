@@ -13,47 +13,12 @@
 #include <utility>
 #include <vector>
 
-#include "cradle/core/base/counter_rng.hpp"
 #include "cradle/core/initial/mass_pattern.hpp"
 #include "cradle/core/initial/particles.hpp"
 #include "cradle/core/initial/rows.hpp"
+#include "cradle/core/initial/velocities.hpp"
 
 namespace cradle {
-
-// Velocity of a particle in units of 2^-28 standard deviations.
-using VelocityDraw = std::function<std::int64_t(ParticleIndex)>;
-
-namespace detail {
-
-// Random bits that are independent of those of displacements, which use the indices 0, 1, ...
-inline std::uint64_t velocity_bits(std::uint64_t seed, std::uint64_t replica, ParticleIndex particle,
-                                   std::uint64_t attempt) {
-  return random_bits(seed, replica, static_cast<std::uint64_t>(particle) | (attempt + 1) << 56);
-}
-
-}  // namespace detail
-
-// Gaussian velocities, by Marsaglia's polar method (SIAM Rev. 6, 260, 1964, doi 10.1137/1006063).
-inline VelocityDraw gaussian_velocity(std::uint64_t seed, std::uint64_t replica) {
-  return [=](ParticleIndex particle) {
-    for (std::uint64_t attempt = 0;; ++attempt) {
-      const std::uint64_t bits = detail::velocity_bits(seed, replica, particle, attempt);
-      const double u = (static_cast<double>(bits >> 32) + 0.5) * 0x1p-31 - 1;
-      const double v = (static_cast<double>(bits & 0xFFFFFFFF) + 0.5) * 0x1p-31 - 1;
-      const double square = u * u + v * v;
-      if (square >= 1) continue;
-      const double normal = u * std::sqrt(-2 * detail::portable_log(square) / square);
-      return static_cast<std::int64_t>(std::floor(normal * static_cast<double>(displacement_unit) + 0.5));
-    }
-  };
-}
-
-// Uniform velocities between plus and minus sqrt(3) standard deviations.
-inline VelocityDraw uniform_velocity(std::uint64_t seed, std::uint64_t replica) {
-  constexpr std::int64_t bound = 464943848;  // sqrt(3) 2^28
-  return
-      [=](ParticleIndex particle) { return uniform_integer(detail::velocity_bits(seed, replica, particle, 0), bound); };
-}
 
 namespace detail {
 
@@ -74,14 +39,15 @@ template <Real T> class Ring final : public OnLattice<T> {
  public:
   // `deviation`: standard deviation of the velocities. Throws std::invalid_argument for no particles, 2^31 or more of
   // them, a length or deviation that is not positive and finite, or a pattern of masses that does not divide the ring.
-  // Draws every velocity once.
-  Ring(ParticleIndex count, T length, T deviation, VelocityDraw velocity, Displacement displacement,
+  // All velocities are held, 8 bytes a particle.
+  Ring(ParticleIndex count, T length, T deviation, const VelocityDraw& draw, Displacement displacement,
        MassPattern<T> masses = {})
       : OnLattice<T>(count, T(length / (T(count) * T(displacement_unit))), std::move(displacement), std::move(masses)),
-        length_(std::move(length)), velocity_(std::move(velocity)), velocity_unit_(deviation / T(displacement_unit)) {
+        length_(std::move(length)), velocity_unit_(deviation / T(displacement_unit)) {
     detail::require_gas("ring", count, length_, deviation);
     require(count % masses_.period() == 0, "a pattern of ", masses_.period(), " masses does not divide a ring of ",
             count, " particles: give a multiple of it");
+    pace_ = drawn(draw, 0, count);
     if (masses_.identical())
       take_off_mean();
     else
@@ -103,21 +69,20 @@ template <Real T> class Ring final : public OnLattice<T> {
 
  private:
   ParticleIndex next(ParticleIndex particle) const { return particle + 1 < count_ ? particle + 1 : 0; }
-  std::int64_t pace(ParticleIndex particle) const {
-    return velocity_(particle) - shift_ - (particle < shifted_more_ ? 1 : 0);
-  }
+  std::int64_t pace(ParticleIndex particle) const { return pace_[static_cast<std::size_t>(particle)]; }
 
   void take_off_mean() {
     std::int64_t sum = 0;
-    for (ParticleIndex particle = 0; particle < count_; ++particle) sum += velocity_(particle);
-    shift_ = sum / count_ - (sum % count_ < 0 ? 1 : 0);
-    shifted_more_ = sum - shift_ * count_;
+    for (const std::int64_t pace : pace_) sum += pace;
+    const std::int64_t mean = sum / count_ - (sum % count_ < 0 ? 1 : 0);
+    std::int64_t more = sum - mean * count_;  // so many particles lose one more
+    for (std::int64_t& pace : pace_) pace -= mean + (more-- > 0 ? 1 : 0);
   }
   // The sums of integers, one for each entry of the pattern, are exact.
   void take_off_drift() {
     std::vector<std::int64_t> sums(static_cast<std::size_t>(masses_.period()), 0);
     for (ParticleIndex particle = 0; particle < count_; ++particle)
-      sums[static_cast<std::size_t>(particle % masses_.period())] += velocity_(particle);
+      sums[static_cast<std::size_t>(particle % masses_.period())] += pace(particle);
     CompensatedSum<T> momentum;
     for (ParticleIndex entry = 0; entry < masses_.period(); ++entry)
       momentum.add(masses_.of(entry) * T(sums[static_cast<std::size_t>(entry)]));
@@ -125,10 +90,9 @@ template <Real T> class Ring final : public OnLattice<T> {
   }
 
   T length_;
-  VelocityDraw velocity_;
+  std::vector<std::int64_t> pace_;  // in units of velocities
   T velocity_unit_;
-  std::int64_t shift_ = 0, shifted_more_ = 0;
-  T drift_{0};  // of the centre of mass, in units of velocities
+  T drift_{0};  // of the centre of mass, if masses differ
 };
 
 }  // namespace cradle

@@ -48,6 +48,7 @@ inline Displacement uniform_displacement(double perturbation, std::uint64_t seed
   require(perturbation >= 0 && perturbation < 0.5, "perturbation out of range (", perturbation,
           "): give a number from 0 to below 0.5 (in spacings)");
   const auto bound = static_cast<std::int64_t>(std::floor(perturbation * static_cast<double>(displacement_unit)));
+  if (bound == 0) return [](ParticleIndex) { return std::int64_t{0}; };
   return [=](ParticleIndex particle) {
     return uniform_integer(random_bits(seed, replica, static_cast<std::uint64_t>(particle)), bound);
   };

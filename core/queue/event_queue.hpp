@@ -27,9 +27,16 @@ class EventQueue {
   static constexpr double never = std::numeric_limits<double>::infinity();
 
   // Slots 0 to slots - 1. The two at either end stay empty: an update touches the neighbours of its slot.
-  explicit EventQueue(std::size_t slots, bool exact_keys, int least_bits = 3)
-      : leaves_(std::size_t{1} << std::max<int>(least_bits, static_cast<int>(std::bit_width(slots - 1)))),
-        mask_(leaves_ - 1), slack_(exact_keys ? 0 : 2 * leaves_), tree_(2 * leaves_, key(never, 0)) {}
+  explicit EventQueue(std::size_t slots, bool exact_keys, int least_bits = 3) {
+    lay_out(slots, exact_keys, least_bits);
+  }
+  // The same for a queue that is there: it becomes empty.
+  void lay_out(std::size_t slots, bool exact_keys, int least_bits) {
+    leaves_ = std::size_t{1} << std::max<int>(least_bits, static_cast<int>(std::bit_width(slots - 1)));
+    mask_ = leaves_ - 1;
+    slack_ = exact_keys ? 0 : 2 * leaves_;
+    tree_.assign(2 * leaves_, key(never, 0));
+  }
 
   std::size_t slots() const { return leaves_; }
   Key next() const { return tree_[1]; }
@@ -146,9 +153,9 @@ class EventQueue {
     return visit_before(bound, visit, 2 * node) && visit_before(bound, visit, 2 * node + 1);
   }
 
-  std::size_t leaves_;
-  Key mask_;
-  Key slack_;
+  std::size_t leaves_ = 0;
+  Key mask_ = 0;
+  Key slack_ = 0;
   std::vector<Key> tree_;  // tree_[1] the root, tree_[leaves_ + s] the key of slot s
 };
 

@@ -48,9 +48,9 @@ int main(int argc, char** argv) {
     put("journal", name, '\1' + tools::to_bytes(tools::RunRecord(std::vector<tools::Group>{group})));
   }
   const tools::EnsembleState state("", scene, {});
-  put("journal", "replica",
-      '\2' + tools::to_bytes(tools::EnsembleRecord{
-                 0, tools::ReplicaRecord{state.layout().row(3, run), state.layout().values(run)}}));
+  tools::EnsembleRecord replica;
+  state.put(replica, state.layout().row(3, run), state.layout().values(run));
+  put("journal", "replica", '\2' + tools::to_bytes(replica));
 
   for (const int kind : {0, 1, 2, 3, 4, 5, 6, 13})
     fuzz::with_run(kind, {}, [&](auto saved) {

@@ -45,7 +45,7 @@ Exit info_of_study(const InfoArguments& options) {
   if (journal.kind == threshold_kind) return info_of_threshold(reader);
   std::vector<std::uint64_t> replicas(journal.points.size());
   while (const auto record = reader.next<EnsembleRecord>())
-    if (record->point < replicas.size()) replicas[record->point] += record->replicas();
+    if (record->point < replicas.size()) replicas[record->point] += record->rows.size();
   fmt::print("journal of {} {}: `cradle resume {}` continues from here, as does the command that was interrupted\n",
              journal.kind == "ensemble" ? "an" : "a", journal.kind, file_of(options.file, ".part"));
   if (reader.torn_bytes() > 0) fmt::print("{} bytes at its end are damaged\n", reader.torn_bytes());

@@ -61,6 +61,8 @@ class AnyEngine {
   AnyEngine& operator=(const AnyEngine&) = delete;
   virtual ~AnyEngine() = default;
 
+  /// Begins again with another replica, whose number the scene now has.
+  virtual void begin_again() = 0;
   /// `observer` may be empty.
   virtual Status advance(const Number& until, const CollisionObserver& observer) = 0;
   /// Makes the next `left` collisions, or those up to `until` if these are fewer, and subtracts them from `left`.

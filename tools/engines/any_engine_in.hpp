@@ -20,9 +20,17 @@ namespace cradle::tools {
 template <Real T> class AnyEngineIn final : public AnyEngine {
  public:
   AnyEngineIn(const Scene& scene, const EngineOptions& options)
-      : run_{scene, initial_particles<T>(scene), number<T>(scene.run.start), {}},
+      : options_(options), run_{scene, initial_particles<T>(scene), number<T>(scene.run.start), {}},
         energy_(run_.particles->mechanical_energy()), last_checked_(run_.start) {
-    run_.engine = engine(options);
+    run_.engine = engine();
+  }
+
+  void begin_again() override {
+    run_.particles = initial_particles<T>(run_.scene);
+    // Random masses may be ones that need to be watched.
+    if (!run_.scene.initial.random_masses.empty() || !run_.engine->begin_again(run_.particles)) run_.engine = engine();
+    energy_ = run_.particles->mechanical_energy(), last_checked_ = run_.start;
+    run_.tagged.reset(), histograms_.reset();
   }
 
   Status advance(const Number& until, const CollisionObserver& observer) override {
@@ -106,15 +114,15 @@ template <Real T> class AnyEngineIn final : public AnyEngine {
   static auto state(auto& self) { return std::tie(self.last_checked_, self.histograms_); }
 
  private:
-  std::unique_ptr<Engine<T>> engine(const EngineOptions& options) const {
-    Policy<T> policy = policy_of<T>(run_.scene, options.restitution != nullptr);
-    policy.interrupt = options.interrupt;
-    policy.progress = [report = options.progress](const T& time, const Counts& counts) {
+  std::unique_ptr<Engine<T>> engine() const {
+    Policy<T> policy = policy_of<T>(run_.scene, options_.restitution != nullptr);
+    policy.interrupt = options_.interrupt;
+    policy.progress = [report = options_.progress](const T& time, const Counts& counts) {
       report(to_double(time), counts);
     };
     if constexpr (std::same_as<T, double>)
-      if (options.restitution) return engine_with(options.restitution, run_.scene, run_.particles, policy);
-    return engine_of<T>(run_.scene, run_.particles, policy, options.workers, options.observed);
+      if (options_.restitution) return engine_with(options_.restitution, run_.scene, run_.particles, policy);
+    return engine_of<T>(run_.scene, run_.particles, policy, options_.workers, options_.observed);
   }
   // The caller's observer comes first, so that a collision is not counted if it throws.
   Observer<T> observer_in(const CollisionObserver& observer) {
@@ -127,6 +135,7 @@ template <Real T> class AnyEngineIn final : public AnyEngine {
     };
   }
 
+  EngineOptions options_;
   RunIn<T> run_;
   T energy_;
   T last_checked_;  // the time of the last collision before the last check

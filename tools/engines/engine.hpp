@@ -5,6 +5,7 @@
 #include <concepts>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -29,6 +30,8 @@ template <Real T> class Engine {
   Engine& operator=(const Engine&) = delete;
   virtual ~Engine() = default;
 
+  /// Begins again with other particles that need the same engine. False if it cannot: then make another one.
+  virtual bool begin_again(const std::shared_ptr<const cradle::Particles<T>>& particles) = 0;
   /// `observer` may be empty.
   virtual Status advance(const T& until, const Observer<T>& observer) = 0;
   /// Makes the next `left` collisions, or those up to `until` if these are fewer, and subtracts them from `left`. If no
@@ -80,6 +83,10 @@ template <Real T, class Run> class EngineOf final : public Engine<T> {
   explicit EngineOf(const Workers& workers, Arguments&&... arguments)
       : run_(std::forward<Arguments>(arguments)...), segments_(workers, {.steps = fastest_steps()}) {}
 
+  bool begin_again(const std::shared_ptr<const cradle::Particles<T>>& particles) override {
+    if constexpr (has_chain) run_.begin_again(particles);
+    return has_chain;
+  }
   Status advance(const T& until, const Observer<T>& observer) override {
     if constexpr (!std::same_as<RunSegments, NoSegments>) {
       return observer ? run_.advance(until, segments_, observer) : run_.advance(until, segments_);

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cmath>
+#include <chrono>
 #include <cstring>
 #include <filesystem>
+#include <memory>
+#include <mutex>
 #include <optional>
 #include <utility>
 
@@ -15,20 +17,6 @@
 namespace cradle::tools {
 
 namespace {
-
-ReplicaRecord run_replica(const EnsembleState& ensemble, ReplicaIndex replica, const EnsembleOptions& options,
-                          Interrupt& interrupt) {
-  const RunOutcome run =
-      options.runner(replica_scene(ensemble.scene(), replica), {ProgressLine::Show::never, nullptr, &interrupt});
-  if (run.end == RunEnd::interrupted) throw ReplicaAbandoned();
-  ReplicaRecord done{ensemble.layout().row(replica, run), ensemble.layout().values(run), {}};
-  if (ensemble.scene().output.every_replica) done.kept = kept_tables(replica, run.result);
-  for (const double value : done.values)
-    if (std::isinf(value))
-      throw Error({}, "a number beyond the range of a double, in which statistics are", fmt::format("{}", value),
-                  "give other units of length or speed");
-  return done;
-}
 
 std::vector<JobRange> jobs_left(const EnsembleStore& store, ReplicaRange wanted) {
   std::vector<JobRange> jobs;
@@ -79,22 +67,67 @@ std::string failure_warning(const EnsembleStates& states, const std::string& fil
   return text;
 }
 
+// What a thread of this process works with: it runs replicas in batches, which take a hundredth of a second or longer
+// only if they are a single replica. A kill loses the present batch.
+struct Worker {
+  std::unique_ptr<ReplicaRun> runs = {};  // of the ensemble that it worked at last
+  std::uint64_t batch = 1;                // replicas
+
+  EnsembleRecord run(const EnsembleState& ensemble, const JobRange& job, const EnsembleOptions& options,
+                     Interrupt& interrupt) {
+    using namespace std::chrono_literals;
+    constexpr std::uint64_t most = 1 << 12;
+    const auto begun = std::chrono::steady_clock::now();
+    if (!runs || &runs->ensemble() != &ensemble)
+      runs = std::make_unique<ReplicaRun>(ensemble, options.runner, interrupt);
+    EnsembleRecord done{.point = job.point};
+    try {
+      for (ReplicaIndex k = job.replicas.first; k < job.replicas.end(); ++k) {
+        if (interrupt.signal() != 0) break;
+        runs->add(k, done);
+      }
+    } catch (const ReplicaAbandoned&) {
+    }
+    const auto took = std::chrono::steady_clock::now() - begun;
+    batch = took > 10ms ? std::max<std::uint64_t>(batch / 2, 1) : took < 4ms ? std::min(2 * batch, most) : batch;
+    return done;
+  }
+};
+
 // Runs jobs on all threads of this process and puts the results into the store.
 void work(EnsembleStore& store, const EnsembleOptions& options, const Processes& processes, const NextJob& next,
-          const std::function<void()>& finished) {
+          const std::function<void(std::uint64_t replicas)>& finished) {
+  std::mutex mutex;
+  std::vector<std::unique_ptr<Worker>> idle;
+  struct Batch {
+    std::shared_ptr<Worker> by;
+    JobRange job;
+  };
+  const auto worker = [&] {
+    const std::scoped_lock lock(mutex);
+    std::unique_ptr<Worker> free = idle.empty() ? std::make_unique<Worker>() : std::move(idle.back());
+    if (!idle.empty()) idle.pop_back();
+    return std::shared_ptr<Worker>(free.release(), [&](Worker* again) {
+      const std::scoped_lock back(mutex);
+      idle.emplace_back(again);
+    });
+  };
   run_jobs(
-      Threads(options.threads > 0 ? options.threads : processes.threads()), next,
-      [&](const Job& job) {
-        return run_replica(*store.states()[job.point], job.replica, options, processes.interrupt());
+      Threads(options.threads > 0 ? options.threads : processes.threads()),
+      [&]() -> std::optional<Batch> {
+        std::shared_ptr<Worker> by = worker();
+        const auto job = next(by->batch);
+        return job ? std::optional(Batch{std::move(by), *job}) : std::nullopt;
       },
-      [&](const Job& job, ReplicaRecord&& done) {
-        store.add({job.point, std::move(done)});
-        finished();
+      [&](const Batch& batch) {
+        return batch.by->run(*store.states()[batch.job.point], batch.job, options, processes.interrupt());
       },
-      [&](const Job& job, const std::string& message) {
-        store.add({job.point, FailureRecord{job.replica, message}});
-        finished();
+      [&](const Batch&, EnsembleRecord&& done) {
+        const std::uint64_t replicas = done.rows.size();
+        if (replicas > 0) store.add(std::move(done));
+        finished(replicas);
       },
+      [](const Batch&, const std::string& message) { throw Error(message, Exit::lost); },
       [&] { return processes.interrupt().signal() != 0; });
 }
 
@@ -113,7 +146,8 @@ EnsembleOutcome lead(EnsembleStore& store, const EnsembleOptions& options, const
   const std::uint64_t wanted = options.replicas.count * store.states().size(), fresh = JobQueue(jobs).left();
   ReplicaProgress progress(options.progress, wanted - fresh, wanted);
   const int signal = processes.share(
-      jobs, [&](const NextJob& next) { work(store, options, processes, next, [&] { progress.done(); }); },
+      jobs,
+      [&](const NextJob& next) { work(store, options, processes, next, [&](std::uint64_t n) { progress.done(n); }); },
       [&](std::uint64_t replicas) { progress.done(replicas); });
   EnsembleOutcome end;
   if (signal == 0) {
@@ -132,8 +166,8 @@ EnsembleOutcome lead(EnsembleStore& store, const EnsembleOptions& options, const
 }
 
 EnsembleOutcome follow(EnsembleStore& store, const EnsembleOptions& options, Processes& processes) {
-  const int signal =
-      processes.share({}, [&](const NextJob& next) { work(store, options, processes, next, [] {}); }, {});
+  const int signal = processes.share(
+      {}, [&](const NextJob& next) { work(store, options, processes, next, [](std::uint64_t) {}); }, {});
   if (signal == 0)
     processes.gather([&](const PutRecord& put) { store.put_records(put); }, [](std::string_view) {});
   else

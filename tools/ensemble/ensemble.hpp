@@ -4,12 +4,11 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <string>
 
 #include "cradle/tools/ensemble/ensemble_store.hpp"
 #include "cradle/tools/ensemble/processes.hpp"
-#include "cradle/tools/run/run.hpp"
+#include "cradle/tools/ensemble/replica_run.hpp"
 #include "cradle/tools/support/progress.hpp"
 
 namespace cradle::tools {
@@ -20,10 +19,7 @@ struct EnsembleOptions {
   ProgressLine::Show progress = ProgressLine::Show::on_terminal;
   Force force = Force::no;                               // begin anew, and replace what is there
   std::uint64_t journal_bytes = std::uint64_t{1} << 26;  // a larger journal is rewritten as statistics
-  /// Runs the scene of one replica. If it throws, that replica has failed.
-  std::function<RunOutcome(const Scene&, const RunOptions&)> runner = [](const Scene& scene, const RunOptions& how) {
-    return run_scene(scene, how);
-  };
+  ReplicaRunner runner = {};  // instead of the program's own runs; if it throws, that replica has failed
 };
 
 struct EnsembleOutcome {

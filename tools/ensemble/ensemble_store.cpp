@@ -174,15 +174,15 @@ void EnsembleStore::start_journal(unsigned rank, ReplicaRange wanted, std::uint6
     journal_.emplace(part_, header());
 }
 
-void EnsembleStore::add(EnsembleRecord&& replica) {
+void EnsembleStore::add(EnsembleRecord&& replicas) {
   {
     const std::shared_lock lock(changing_);
-    const std::string bytes = to_bytes(replica);
+    const std::string bytes = to_bytes(replicas);
     std::unique_lock appending(appending_);
     if (!journal_) journal_.emplace(part_, header());
     journal_->append(bytes);
     appending.unlock();
-    states_.at(replica.point)->apply(std::move(replica));
+    states_.at(replicas.point)->apply(std::move(replicas));
   }
   keep_safe();
 }

@@ -1,7 +1,8 @@
 // The ensembles of one result file, and the journals that keep finished replicas safe during the work:
 //
 //   FILE         the result of earlier calls, written at the end, in one step
-//   FILE.part    journal: replicas finished since then, each appended at once; it survives any end of the program
+//   FILE.part    journal: replicas finished since then, appended in batches of about a hundredth of a second; it survives
+//                any end of the program
 //   FILE.part.R  the same by rank R of an MPI job
 //
 // Running the same scene on the same FILE continues from there. A journal that has become large is rewritten as nodes
@@ -54,8 +55,8 @@ class EnsembleStore {
   /// beginning; another rank writes its own, which appears with its first replica. A journal larger than `largest`
   /// bytes is rewritten.
   void start_journal(unsigned rank, ReplicaRange wanted, std::uint64_t largest);
-  /// Adds a replica, or one that failed. May be called from several threads.
-  void add(EnsembleRecord&& replica);
+  /// Adds finished replicas. May be called from several threads.
+  void add(EnsembleRecord&& replicas);
   /// Syncs the journal to the disk, so that it survives a crash of the machine.
   void sync();
 

@@ -114,22 +114,24 @@ Group EnsembleState::spread_group(const Spread& spread) const {
 }
 
 Group EnsembleState::replica_group() const {
-  std::vector<ReplicaRow> rows;
-  for (const std::size_t k : table_.order()) rows.push_back(table_[k]);
+  const std::vector<std::size_t> rows = table_.order();
   const auto of_rows = [&](auto of) { return numbers_of(rows, of); };
+  const auto whole = [&](auto of) {
+    return of_rows([&, of](std::size_t row) { return std::uint64_t{std::invoke(of, table_, row)}; });
+  };
   std::string outcomes;
   for (std::size_t k = 0; k < outcome_count; ++k)
     outcomes += fmt::format("{}{} {}", k == 0 ? "" : ", ", k, run_ends[k].text);
   Group group{name("replicas"),
               {},
-              {{"index", "1", "initial.replica of the run", of_rows(&ReplicaRow::index)},
+              {{"index", "1", "initial.replica of the run", whole(&ReplicaTable::index)},
                {"outcome", "1", outcomes,
-                of_rows([](const ReplicaRow& row) { return static_cast<std::uint64_t>(row.outcome); })},
-               {"collisions", "1", "collisions until the end", of_rows(&ReplicaRow::collisions)},
-               {"merges", "1", "merges until the end", of_rows(&ReplicaRow::merges)}}};
+                of_rows([&](std::size_t row) { return static_cast<std::uint64_t>(table_.outcome(row)); })},
+               {"collisions", "1", "collisions until the end", whole(&ReplicaTable::collisions)},
+               {"merges", "1", "merges until the end", whole(&ReplicaTable::merges)}}};
   for (std::size_t i = 0; i < layout_.numbers.size(); ++i) {
     group.columns.push_back(layout_.numbers[i]);
-    group.columns.back().values = of_rows([i](const ReplicaRow& row) { return row.numbers[i]; });
+    group.columns.back().values = of_rows([&, i](std::size_t row) { return table_.number(row, i); });
   }
   return group;
 }
@@ -205,7 +207,7 @@ void EnsembleState::read(const Result& result, const std::string& file) {
   }
   kept_ = separated_tables(result, name(""), file);
   for (std::size_t k = 0; k < spreads_.size(); ++k)
-    take(SpreadRecord{k, get<std::uint64_t>(get(result, spread_group(spreads_[k]).name, file), "counts", file)}, file);
+    take_counts(k, get<std::uint64_t>(get(result, spread_group(spreads_[k]).name, file), "counts", file), file);
 }
 
 }  // namespace cradle::tools

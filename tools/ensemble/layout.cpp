@@ -13,9 +13,7 @@ namespace {
 
 bool of_series(const std::string& group) { return group == "series" || group.starts_with("series/"); }
 
-const Column& get(const Result& result, const std::string& group, const std::string& name) {
-  const Group* table = result.find(group);
-  if (const Column* column = table == nullptr ? nullptr : table->find(name)) return *column;
+[[noreturn]] void no_record_of(const std::string& group, const std::string& name) {
   throw std::logic_error(fmt::format("a run recorded no {}/{}, which others of its scene have", group, name));
 }
 
@@ -25,9 +23,9 @@ double at(const Numbers& values, std::size_t i) {
 }
 
 // How many samples a run took at planned times. A run that ended early has an additional sample at its end.
-std::size_t samples_taken(const Column& time, const std::vector<double>& planned) {
-  std::size_t taken = std::min(time.rows(), planned.size());
-  if (taken > 0 && at(time.values, taken - 1) != planned[taken - 1]) --taken;
+std::size_t samples_taken(const std::vector<double>& time, const std::vector<double>& planned) {
+  std::size_t taken = std::min(time.size(), planned.size());
+  if (taken > 0 && time[taken - 1] != planned[taken - 1]) --taken;
   return taken;
 }
 
@@ -67,19 +65,19 @@ ReplicaLayout replica_layout(const Scene& scene) {
   check_ensemble(scene);
   const PlannedTimes times = planned_times(scene);
   ReplicaLayout layout;
-  const auto add = [&](const Column& column, const std::string& group, std::size_t rows) {
+  const auto add = [&](const Column& column, const std::string& group, std::size_t rows, std::size_t number = 0) {
     layout.quantities.push_back(
-        {group, column.name, column.unit, column.description, layout.entries, rows, column.width});
+        {group, column.name, column.unit, column.description, layout.entries, rows, column.width, number});
     layout.entries += layout.quantities.back().size();
   };
   const auto rows = measured(scene);
   for (const auto& [number, row] : rows)
     for (const Group& group : row->growing ? row->growing(scene) : std::vector<Group>())
-      for (const Column& column : group.columns)
-        if (column.name == "time")
-          layout.time = column;
+      for (std::size_t k = 0; k < group.columns.size(); ++k)
+        if (const Column& column = group.columns[k]; column.name == "time")
+          layout.time = column;  // the first column of "series"
         else if (!column.names)
-          add(column, group.name, times.series.size());
+          add(column, group.name, times.series.size(), k);
   layout.time.values = times.series;
   const auto add_binned = [&](const Group& table, const std::string& group, std::vector<Attribute> attributes) {
     layout.binned.push_back({group, std::move(attributes), {}});
@@ -107,37 +105,64 @@ ReplicaLayout replica_layout(const Scene& scene) {
 }
 
 ReplicaRow ReplicaLayout::row(std::uint64_t index, const RunOutcome& run) const {
-  const RunEnd end = end_row(run.end).status == Exit::collapse ? RunEnd::collapsed : run.end;
-  ReplicaRow row{index, end, run.collisions, run.merges, std::vector<double>(numbers.size(), missing)};
-  const auto put = [&](const std::string& name, double value) {
-    for (std::size_t k = 0; k < numbers.size(); ++k)
-      if (numbers[k].name == name) return void(row.numbers[k] = value);
-    throw std::logic_error("a run recorded a number that others of its scene do not: " + name);
-  };
-  put("energy", run.energy);
-  if (const Group* collapse = run.result.find("collapse"))
-    put(collapse_time, attribute<double>(collapse->attributes, "time", "a replica"));
-  for (const auto& [name, value] : run.summary) put(name, value);
+  ReplicaRow row;
+  put_row(index, run, row);
   return row;
 }
 
+void ReplicaLayout::put_row(std::uint64_t index, const RunOutcome& run, ReplicaRow& row) const {
+  row.index = index, row.collisions = run.collisions, row.merges = run.merges;
+  row.outcome = end_row(run.end).status == Exit::collapse ? RunEnd::collapsed : run.end;
+  row.numbers.assign(numbers.size(), missing);
+  row.numbers.front() = run.energy;
+  const auto put = [&](std::string_view name, double value) {
+    for (std::size_t k = 1; k < numbers.size(); ++k)
+      if (numbers[k].name == name) return void(row.numbers[k] = value);
+    throw std::logic_error(fmt::format("a run recorded a number that others of its scene do not: {}", name));
+  };
+  if (run.collapsed_at) put(collapse_time, *run.collapsed_at);
+  for (const auto& [name, value] : run.summary) put(name, value);
+}
+
 std::vector<double> ReplicaLayout::values(const RunOutcome& run) const {
-  std::vector<double> numbers_of_run(entries, missing);
-  const std::size_t samples =
-      samples_taken(get(run.result, "series", "time"), std::get<std::vector<double>>(time.values));
-  const bool early = ended_early(run.end);
-  if (!early && samples != time.rows()) throw std::logic_error("a run that reached its end has not taken all samples");
-  for (const Quantity& quantity : quantities) {
-    const bool series = of_series(quantity.group);
-    if (!series && early && run.result.find(quantity.group) == nullptr) continue;  // the run ended before this profile
-    const Column& column = get(run.result, quantity.group, quantity.name);
-    const std::size_t rows = series ? samples : quantity.rows;
-    if (column.width != quantity.width || column.rows() < rows)
-      throw std::logic_error(
-          fmt::format("{}/{} is not of the size that others of its scene have", quantity.group, quantity.name));
-    for (std::size_t i = 0; i < rows * quantity.width; ++i) numbers_of_run[quantity.offset + i] = at(column.values, i);
+  const Group* table = run.result.find("series");
+  if (table == nullptr) no_record_of("series", "time");
+  SeriesNumbers series;
+  for (const Column& column : table->columns) {
+    series.emplace_back();
+    for (std::size_t i = 0; i < column.rows() * column.width; ++i) series.back().push_back(at(column.values, i));
   }
+  std::vector<double> numbers_of_run;
+  put_values(run.end, series, run.result.groups, numbers_of_run);
   return numbers_of_run;
+}
+
+void ReplicaLayout::put_values(RunEnd end, const SeriesNumbers& series, const std::vector<Group>& tables,
+                               std::vector<double>& values) const {
+  values.assign(entries, missing);
+  if (series.empty()) no_record_of("series", "time");
+  const std::size_t samples = samples_taken(series.front(), std::get<std::vector<double>>(time.values));
+  const bool early = ended_early(end);
+  if (!early && samples != time.rows()) throw std::logic_error("a run that reached its end has not taken all samples");
+  const auto wrong = [](const Quantity& of) {
+    return std::logic_error(fmt::format("{}/{} is not of the size that others of its scene have", of.group, of.name));
+  };
+  for (const Quantity& quantity : quantities) {
+    double* const to = values.data() + quantity.offset;
+    if (quantity.group == "series") {
+      if (quantity.column >= series.size() || series[quantity.column].size() < samples) throw wrong(quantity);
+      std::copy_n(series[quantity.column].begin(), samples, to);
+      continue;
+    }
+    const auto table = std::ranges::find(tables, quantity.group, &Group::name);
+    const bool of_times = of_series(quantity.group);
+    if (!of_times && early && table == tables.end()) continue;  // the run ended before this profile
+    const Column* column = table == tables.end() ? nullptr : table->find(quantity.name);
+    if (column == nullptr) no_record_of(quantity.group, quantity.name);
+    const std::size_t rows = of_times ? samples : quantity.rows;
+    if (column->width != quantity.width || column->rows() < rows) throw wrong(quantity);
+    for (std::size_t i = 0; i < rows * quantity.width; ++i) to[i] = at(column->values, i);
+  }
 }
 
 }  // namespace cradle::tools

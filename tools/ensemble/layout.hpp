@@ -25,6 +25,7 @@ inline constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 struct Quantity {
   std::string group, name, unit, description;
   std::size_t offset = 0, rows = 0, width = 1;
+  std::size_t column = 0;  // in the table "series"
   std::size_t size() const { return rows * width; }
 };
 
@@ -57,10 +58,15 @@ struct ReplicaLayout {
   std::size_t entries = 0;      // length of the vector
   std::vector<Column> numbers;  // the numbers of a ReplicaRow (energy at the end, ...), without values
 
-  /// The vector of a run, with NaN after its end if it ended early. Throws std::logic_error for a run with another
-  /// layout.
+  /// The vector of a run that has its tables, with NaN after its end if it ended early. Throws std::logic_error for a
+  /// run with another layout.
   std::vector<double> values(const RunOutcome& run) const;
+  /// The same into `values`, with the columns of the table "series" apart from the other tables.
+  using SeriesNumbers = std::vector<std::vector<double>>;
+  void put_values(RunEnd end, const SeriesNumbers& series, const std::vector<Group>& tables,
+                  std::vector<double>& values) const;
   ReplicaRow row(std::uint64_t index, const RunOutcome& run) const;
+  void put_row(std::uint64_t index, const RunOutcome& run, ReplicaRow& row) const;
 };
 
 /// Throws Error, naming the key, if the scene cannot be run as an ensemble.

@@ -64,12 +64,10 @@ int OneProcess::share(const std::vector<JobRange>& jobs, const std::function<voi
                       const std::function<void(std::uint64_t)>&) {
   JobQueue queue(jobs);
   std::mutex mutex;
-  work([&]() -> std::optional<Job> {
+  work([&](std::uint64_t most) -> std::optional<JobRange> {
     if (interrupt().signal() != 0) return std::nullopt;
     const std::scoped_lock lock(mutex);
-    const auto piece = queue.take(1);
-    if (!piece) return std::nullopt;
-    return Job{piece->point, piece->replicas.first};
+    return queue.take(most);
   });
   return interrupt().signal();
 }

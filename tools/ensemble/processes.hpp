@@ -19,15 +19,11 @@ struct JobRange {
   std::size_t point;  // which point of a sweep
   ReplicaRange replicas;
 };
-struct Job {
-  std::size_t point;
-  ReplicaIndex replica;
-};
 /// Receives records, one by one.
 using PutRecord = std::function<void(std::string_view record)>;
-/// Gives the next job, in order; nothing if there are no more or a signal says to stop. May be called from several
-/// threads.
-using NextJob = std::function<std::optional<Job>()>;
+/// Gives the next replicas, at most so many, in order; nothing if there are no more or a signal says to stop. May be
+/// called from several threads.
+using NextJob = std::function<std::optional<JobRange>(std::uint64_t most)>;
 
 /// The number of processors that this process may use: launchers bind their processes to some of the machine's.
 unsigned processors();

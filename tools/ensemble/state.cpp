@@ -16,6 +16,29 @@ void ReplicaTable::add(const ReplicaRow& row) {
   for (std::size_t k = 0; k < width_; ++k) numbers_.push_back(k < row.numbers.size() ? row.numbers[k] : missing);
 }
 
+void ReplicaTable::add(const ReplicaTable& other) {
+  integers_.insert(integers_.end(), other.integers_.begin(), other.integers_.end());
+  numbers_.insert(numbers_.end(), other.numbers_.begin(), other.numbers_.end());
+}
+
+ReplicaTable ReplicaTable::part(std::size_t first, std::size_t last) const {
+  ReplicaTable some(width_);
+  const auto of = [&](const auto& all, std::size_t width) {
+    const auto part = std::span(all).subspan(first * width, (last - first) * width);
+    return std::vector(part.begin(), part.end());
+  };
+  some.integers_ = of(integers_, integers), some.numbers_ = of(numbers_, width_);
+  return some;
+}
+
+void ReplicaTable::loaded() const {
+  require_state(width_ < 1 << 20 && integers_.size() % integers == 0 && numbers_.size() == width_ * size(), "rows");
+  for (std::size_t k = 0; k < size(); ++k) {
+    require_state(index(k) >> 63 == 0, "a replica beyond the last");  // the tree of replicas ends there
+    require_state(static_cast<std::size_t>(outcome(k)) < outcome_count, "no outcome of a replica");
+  }
+}
+
 ReplicaRow ReplicaTable::operator[](std::size_t k) const {
   const auto numbers = std::span(numbers_).subspan(k * width_, width_);
   const auto of_row = std::span(integers_).subspan(k * integers, integers);
@@ -25,6 +48,7 @@ ReplicaRow ReplicaTable::operator[](std::size_t k) const {
 std::vector<std::size_t> ReplicaTable::order() const {
   std::vector<std::size_t> rows(size());
   std::iota(rows.begin(), rows.end(), std::size_t{0});
+  if (std::ranges::is_sorted(rows, {}, [&](std::size_t row) { return index(row); })) return rows;
   std::ranges::sort(rows, {}, [&](std::size_t row) { return integers_[row * integers]; });
   return rows;
 }
@@ -50,7 +74,7 @@ EnsembleState::EnsembleState(std::string group, Scene scene, const std::vector<S
 EnsembleState::Outcomes EnsembleState::outcomes() const {
   const std::scoped_lock lock(mutex_);
   Outcomes counts{};
-  for (std::size_t k = 0; k < table_.size(); ++k) ++counts.at(static_cast<std::size_t>(table_[k].outcome));
+  for (std::size_t k = 0; k < table_.size(); ++k) ++counts.at(static_cast<std::size_t>(table_.outcome(k)));
   return counts;
 }
 
@@ -58,8 +82,8 @@ std::map<ReplicaIndex, std::string> EnsembleState::failures() const {
   const std::scoped_lock lock(mutex_);
   std::map<ReplicaIndex, std::string> failures = messages_;
   for (std::size_t k = 0; k < table_.size(); ++k)
-    if (end_row(table_[k].outcome).status == Exit::lost && table_[k].outcome != RunEnd::failed)
-      failures.emplace(table_[k].index, end_row(table_[k].outcome).text);
+    if (end_row(table_.outcome(k)).status == Exit::lost && table_.outcome(k) != RunEnd::failed)
+      failures.emplace(table_.index(k), end_row(table_.outcome(k)).text);
   return failures;
 }
 
@@ -72,7 +96,7 @@ bool EnsembleState::holds_any_of(const EnsembleState& other) const {
 }
 
 void EnsembleState::take(EnsembleState& other) {
-  for (std::size_t k = 0; k < other.table_.size(); ++k) table_.add(other.table_[k]);
+  table_.add(other.table_);
   messages_.merge(other.messages_);
   kept_.merge(other.kept_);
   for (std::size_t k = 0; k < spreads_.size(); ++k) spreads_[k].counts.add(other.spreads_[k].counts);
@@ -111,11 +135,10 @@ void EnsembleState::take(TreeNode&& node, const std::string& from) {
   }
 }
 
-void EnsembleState::take(SpreadRecord&& spread, const std::string& from) {
-  auto& [k, counts] = spread;
-  if (k >= spreads_.size() || counts.size() != spreads_[k].counts.all_counts().size())
-    throw damaged(from, fmt::format("{} counts for the spread {}", counts.size(), k));
-  Histograms& all = spreads_[k].counts;
+void EnsembleState::take_counts(std::size_t spread, std::vector<std::uint64_t> counts, const std::string& from) {
+  if (spread >= spreads_.size() || counts.size() != spreads_[spread].counts.all_counts().size())
+    throw damaged(from, fmt::format("{} counts for the spread {}", counts.size(), spread));
+  Histograms& all = spreads_[spread].counts;
   Histograms other(all.bins(), all.entries());
   other.set_all_counts(std::move(counts));
   all.add(other);
@@ -128,10 +151,10 @@ void EnsembleState::check_replicas(const std::string& file) const {
   std::optional<ReplicaIndex> before;
   bool same = table_.size() == tree_.size();
   for (const std::size_t k : table_.order()) {
-    const ReplicaRow row = table_[k];
-    same = same && tree_.contains(row.index) && before != row.index;
-    before = row.index;
-    in_table += row.outcome != RunEnd::failed;
+    const ReplicaIndex index = table_.index(k);
+    same = same && tree_.contains(index) && before != index;
+    before = index;
+    in_table += table_.outcome(k) != RunEnd::failed;
   }
   if (!same || in_table != in_statistics)
     throw Error({file, 0, name("replicas")}, "a damaged ensemble",
@@ -141,61 +164,69 @@ void EnsembleState::check_replicas(const std::string& file) const {
 
 // ---- as records
 
-std::uint64_t EnsembleRecord::replicas() const {
-  if (const auto* rows = std::get_if<RowsRecord>(&what)) return rows->size();
-  return std::holds_alternative<ReplicaRecord>(what) || std::holds_alternative<FailureRecord>(what) ? 1 : 0;
+void EnsembleState::put(EnsembleRecord& record, const ReplicaRow& row, const std::vector<double>& values) const {
+  if (record.rows.size() == 0) record.rows = ReplicaTable(table_.numbers());
+  record.rows.add(row);
+  Moments memory;
+  if (!record.left_over.empty()) memory = std::move(record.left_over.back()), record.left_over.pop_back();
+  append(record.nodes, {row.index, 0, moments_of(values, std::move(memory))}, record.left_over);
+  for (const auto& [quantity, counts] : spreads_) {
+    const auto of_replica = std::span(values).subspan(quantity.offset, quantity.size());
+    record.to_spread.insert(record.to_spread.end(), of_replica.begin(), of_replica.end());
+  }
+}
+
+void EnsembleState::put_failure(EnsembleRecord& record, ReplicaIndex replica, std::string message) const {
+  std::replace(message.begin(), message.end(), '\n', ' ');  // one line each in result files
+  if (record.rows.size() == 0) record.rows = ReplicaTable(table_.numbers());
+  record.rows.add({replica, RunEnd::failed, 0, 0, {}});
+  append(record.nodes, {replica, 0, {}}, record.left_over);
+  record.messages.emplace(replica, std::move(message));
 }
 
 void EnsembleState::put_records(std::uint64_t point, const JournalWriter::Put& put) const {
-  const auto put_one = [&](auto&& what) { put(to_bytes(EnsembleRecord{point, std::forward<decltype(what)>(what)})); };
+  const auto put_one = [&](EnsembleRecord&& record) {
+    record.point = point;
+    put(to_bytes(record));
+  };
   constexpr std::size_t rows_of_a_record = 10000;
   for (std::size_t first = 0; first < table_.size(); first += rows_of_a_record) {
-    RowsRecord rows;
-    for (std::size_t k = first; k < std::min(first + rows_of_a_record, table_.size()); ++k) {
-      const auto failure = messages_.find(table_[k].index);
-      rows.emplace_back(table_[k], failure == messages_.end() ? "" : failure->second);
-    }
-    put_one(std::move(rows));
+    EnsembleRecord record{.rows = table_.part(first, std::min(first + rows_of_a_record, table_.size()))};
+    for (std::size_t k = 0; k < record.rows.size(); ++k)
+      if (const auto failure = messages_.find(record.rows.index(k)); failure != messages_.end())
+        record.messages.insert(*failure);
+    put_one(std::move(record));
   }
-  for (std::size_t k = 0; k < spreads_.size(); ++k) put_one(SpreadRecord{k, spreads_[k].counts.all_counts()});
-  for (TreeNode& node : tree_.nodes()) put_one(std::move(node));
-  for (const auto& [replica, kept] : kept_) put_one(KeptRecord{replica, kept});
+  EnsembleRecord counted;
+  for (const Spread& spread : spreads_) counted.spreads.push_back(spread.counts.all_counts());
+  if (!spreads_.empty()) put_one(std::move(counted));
+  for (TreeNode& node : tree_.nodes()) put_one({.nodes = {std::move(node)}});
+  for (const auto& kept : kept_) put_one({.kept = {kept}});
 }
 
 void EnsembleState::apply(EnsembleRecord&& record) {
-  std::visit([this](auto& what) { take(std::move(what)); }, record.what);
-}
-
-void EnsembleState::take(ReplicaRecord&& one) {
-  if (tree_.contains(one.row.index)) return;
-  check_length(one.values.size());
-  {
-    const std::scoped_lock lock(mutex_);
-    table_.add(one.row);
-    if (!one.kept.empty()) kept_.emplace(one.row.index, std::move(one.kept));
-    for (auto& [quantity, counts] : spreads_)
-      counts.add(std::span(one.values).subspan(quantity.offset, quantity.size()));
-  }
-  tree_.add(one.row.index, std::move(one.values));
-}
-
-void EnsembleState::take(FailureRecord&& failure) {
-  auto& [replica, message] = failure;
-  if (tree_.contains(replica)) return;
-  std::replace(message.begin(), message.end(), '\n', ' ');  // one line each in result files
-  {
-    const std::scoped_lock lock(mutex_);
-    table_.add({replica, RunEnd::failed, 0, 0, {}});
-    messages_.emplace(replica, std::move(message));
-  }
-  tree_.add(replica, std::nullopt);
-}
-
-void EnsembleState::take(RowsRecord&& rows) {
-  for (auto& [row, message] : rows) {
-    table_.add(row);
-    if (row.outcome == RunEnd::failed) messages_.emplace(row.index, std::move(message));
-  }
+  const std::string from = "a journal";
+  if (!record.nodes.empty() && std::ranges::all_of(record.nodes, [&](const TreeNode& node) {
+        return node.level < 63 && tree_.missing(node.range()).empty();
+      }))
+    return;
+  if (record.rows.size() > 0 && record.rows.numbers() != table_.numbers())
+    throw damaged(from, fmt::format("{} numbers a row", record.rows.numbers()));
+  for (TreeNode& node : record.nodes) take(std::move(node), from);
+  const std::scoped_lock lock(mutex_);
+  table_.add(record.rows);
+  messages_.merge(record.messages);
+  for (std::size_t k = 0; k < record.spreads.size(); ++k) take_counts(k, std::move(record.spreads[k]), from);
+  std::size_t wanted = 0;
+  for (const Spread& spread : spreads_) wanted += spread.quantity.size();
+  if (wanted == 0 ? !record.to_spread.empty() : record.to_spread.size() % wanted != 0)
+    throw damaged(from, fmt::format("{} numbers for spreads", record.to_spread.size()));
+  for (auto at = record.to_spread.begin(); at != record.to_spread.end();)
+    for (auto& [quantity, counts] : spreads_) {
+      counts.add({at, at + static_cast<std::ptrdiff_t>(quantity.size())});
+      at += static_cast<std::ptrdiff_t>(quantity.size());
+    }
+  kept_.merge(record.kept);
 }
 
 }  // namespace cradle::tools

@@ -10,7 +10,6 @@
 #include <string>
 #include <tuple>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "cradle/core/ensemble/ensemble.hpp"
@@ -20,55 +19,52 @@
 
 namespace cradle::tools {
 
-// ---- an ensemble as records, which journals hold and ranks send
-struct ReplicaRecord {
-  ReplicaRow row;
-  std::vector<double> values;
-  ReplicaTables kept = {};
-  static auto state(auto& self) { return std::tie(self.row, self.values, self.kept); }
-};
-struct FailureRecord {
-  ReplicaIndex replica = 0;
-  std::string message;
-  static auto state(auto& self) { return std::tie(self.replica, self.message); }
-  void loaded() const { require_state(replica >> 63 == 0, "a replica beyond the last"); }
-};
-using RowsRecord = std::vector<std::pair<ReplicaRow, std::string>>;  // with messages; their values are in the nodes
-struct SpreadRecord {
-  std::uint64_t number = 0;  // of the spread
-  std::vector<std::uint64_t> counts;
-  static auto state(auto& self) { return std::tie(self.number, self.counts); }
-};
-struct KeptRecord {
-  ReplicaIndex replica = 0;
-  ReplicaTables kept;
-  static auto state(auto& self) { return std::tie(self.replica, self.kept); }
-};
-struct EnsembleRecord {
-  std::uint64_t point = 0;  // which ensemble of a sweep
-  std::variant<ReplicaRecord, FailureRecord, RowsRecord, SpreadRecord, TreeNode, KeptRecord> what;
-  static auto state(auto& self) { return std::tie(self.point, self.what); }
-
-  /// The number of replicas whose outcome it holds.
-  std::uint64_t replicas() const;
-};
-
 /// Rows in the order of arrival, numbers side by side: about 50 bytes a replica.
 class ReplicaTable {
  public:
   explicit ReplicaTable(std::size_t numbers) : width_(numbers) {}
 
   void add(const ReplicaRow& row);
+  /// Adds the rows of a table of as many numbers.
+  void add(const ReplicaTable& other);
   std::size_t size() const { return integers_.size() / integers; }
+  std::size_t numbers() const { return width_; }
   ReplicaRow operator[](std::size_t k) const;
+  /// Rows [first, last).
+  ReplicaTable part(std::size_t first, std::size_t last) const;
+  ReplicaIndex index(std::size_t k) const { return integers_[k * integers]; }
+  RunEnd outcome(std::size_t k) const { return static_cast<RunEnd>(integers_[k * integers + 1]); }
+  double number(std::size_t k, std::size_t which) const { return numbers_[k * width_ + which]; }
+  std::uint64_t collisions(std::size_t k) const { return integers_[k * integers + 2]; }
+  std::uint64_t merges(std::size_t k) const { return integers_[k * integers + 3]; }
   /// The positions of the rows, sorted by replica index.
   std::vector<std::size_t> order() const;
+
+  static auto state(auto& self) { return std::tie(self.width_, self.integers_, self.numbers_); }
+  void loaded() const;
 
  private:
   static constexpr std::size_t integers = 4;
   std::size_t width_;
   std::vector<std::uint64_t> integers_;  // index, outcome, collisions, merges
   std::vector<double> numbers_;
+};
+
+/// A part of an ensemble, which journals hold and ranks send: finished replicas with their statistics, or all of an
+/// ensemble in several records.
+struct EnsembleRecord {
+  std::uint64_t point = 0;  // which ensemble of a sweep
+  ReplicaTable rows = ReplicaTable(0);
+  std::map<ReplicaIndex, std::string> messages = {};     // of the replicas that failed
+  std::vector<TreeNode> nodes = {};                      // statistics
+  std::vector<double> to_spread = {};                    // numbers that the spreads do not count yet, for each replica
+  std::vector<std::vector<std::uint64_t>> spreads = {};  // counts
+  KeptReplicas kept = {};
+  std::vector<Moments> left_over = {};  // memory for more of them
+
+  static auto state(auto& self) {
+    return std::tie(self.point, self.rows, self.messages, self.nodes, self.to_spread, self.spreads, self.kept);
+  }
 };
 
 /// Mean, standard error and extremes of a quantity. NaN if no replica has it. Counts the replicas that have it if not
@@ -101,8 +97,12 @@ class EnsembleState {
 
   /// Puts everything as records, enough to restore this state; `point` is the number of this ensemble.
   void put_records(std::uint64_t point, const JournalWriter::Put& put) const;
-  /// Skips a replica that is there already. Throws Error (Exit::io) for a record of another ensemble. Records of one
-  /// replica each may come from several threads.
+  /// Adds a replica to the record, after those before it.
+  void put(EnsembleRecord& record, const ReplicaRow& row, const std::vector<double>& values) const;
+  /// The same for a replica that failed.
+  void put_failure(EnsembleRecord& record, ReplicaIndex replica, std::string message) const;
+  /// Skips statistics that are there already, with their replicas. Throws Error (Exit::io) for a record of another
+  /// ensemble. May be called from several threads.
   void apply(EnsembleRecord&& record);
 
   // ---- as groups of a result file
@@ -118,13 +118,9 @@ class EnsembleState {
 
   std::string name(const std::string& below) const { return group_.empty() ? below : group_ + "/" + below; }
   void check_length(std::size_t entries) const;
-  void take(ReplicaRecord&& one);
-  void take(FailureRecord&& failure);
-  void take(RowsRecord&& rows);
-  void take(KeptRecord&& kept) { kept_.emplace(kept.replica, std::move(kept.kept)); }
-  // These two check everything, since it comes from a file or another process.
-  void take(SpreadRecord&& spread, const std::string& from = "a journal");
-  void take(TreeNode&& node, const std::string& from = "a journal");
+  // These check everything, since it comes from a file or another process.
+  void take_counts(std::size_t spread, std::vector<std::uint64_t> counts, const std::string& from);
+  void take(TreeNode&& node, const std::string& from);
   void check_replicas(const std::string& file) const;
   Group quantity_group(const Quantity& quantity, const Moments& total) const;
   Group spread_group(const Spread& spread) const;

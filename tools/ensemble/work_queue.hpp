@@ -42,7 +42,7 @@ class WorkQueue {
     const std::scoped_lock lock(mutex_);
     return jobs_.left() == 0;
   }
-  /// The number of jobs that threads have taken.
+  /// The number of replicas that threads have taken.
   std::uint64_t taken() const {
     const std::scoped_lock lock(mutex_);
     return taken_;
@@ -61,7 +61,7 @@ class WorkQueue {
   void run(const std::function<void(const NextJob&)>& work) {
     std::exception_ptr error;
     try {
-      work([this] { return next(); });
+      work([this](std::uint64_t most) { return next(most); });
     } catch (...) {
       error = std::current_exception();
     }
@@ -71,14 +71,14 @@ class WorkQueue {
     changed_.notify_all();
   }
 
-  std::optional<Job> next() {
+  std::optional<JobRange> next(std::uint64_t most) {
     std::unique_lock lock(mutex_);
     for (;;) {
       if (interrupt_.signal() != 0) return std::nullopt;
-      if (const auto piece = jobs_.take(1)) {
-        ++taken_;
+      if (const auto piece = jobs_.take(most)) {
+        taken_ += piece->replicas.count;
         changed_.notify_all();
-        return Job{piece->point, piece->replicas.first};
+        return piece;
       }
       if (closed_) return std::nullopt;
       changed_.wait_for(lock, std::chrono::milliseconds(10));  // wakes for signals, which notify nobody

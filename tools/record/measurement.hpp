@@ -5,6 +5,7 @@
 // The class has, of these, the members that it needs. `now` is a Moment (engines/moment.hpp), `put` takes tables.
 //
 //   explicit X(measured)       begins
+//   begin_again()              as just begun; without it, another one is made
 //   find(now, stopped)         at a time that is due: changes nothing yet, and throws WalkStopped where `stopped` stops
 //                              a loop
 //   record(now, due, put)      then: keeps or puts what was found

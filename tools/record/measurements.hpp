@@ -1,6 +1,7 @@
 // The list of measurements, and those that a run holds. To add one, write its file and add it here.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <tuple>
 
@@ -30,26 +31,42 @@ template <class List> class MeasurementsOf;
 template <class... Each> class MeasurementsOf<MeasurementList<Each...>> {
  public:
   /// `exact`: whether texts of numbers with all digits are wanted.
-  MeasurementsOf(const Scene& scene, AnyEngine& engine, const Schedule& plan, bool exact) : scene_(scene), plan_(plan) {
+  MeasurementsOf(const Scene& scene, AnyEngine& engine, const Schedule& plan, bool exact)
+      : scene_(scene), engine_(engine), plan_(plan), exact_(exact) {
     with_rows(all_, [&]<class M>(std::optional<M>& measurement, std::size_t row) {
-      if (M::row.wanted(scene)) measurement.emplace(Measured{scene, engine, plan.of[row].samples.size(), exact});
+      if (M::row.wanted(scene)) measurement.emplace(measured(row));
+    });
+  }
+  /// As just made, for an engine that begins again.
+  void begin_again() {
+    with_rows(all_, [&]<class M>(std::optional<M>& measurement, std::size_t row) {
+      if constexpr (requires { measurement->begin_again(); })
+        measurement->begin_again();
+      else if (measurement)
+        measurement.emplace(measured(row));
     });
   }
 
-  /// Whether any is due that needs all particles.
-  bool need_particles(const Number& time) const {
-    return any([&](const auto& m, std::size_t row) { return m.row.of_particles && plan_.due(row, time); });
+  /// Asks the plan what is due now, for the next three. Returns whether anything is due that needs all particles.
+  bool come_to(const Number& time) {
+    bool need_particles = false;
+    each([&](auto& m, std::size_t row) {
+      due_[row] = plan_.due(row, time);
+      need_particles = need_particles || (m.row.of_particles && due_[row]);
+    });
+    return need_particles;
   }
+  bool series_is_due() const { return due_.front().sample; }
   void find(const Moment& now, const Stopped& stopped) {
     each([&](auto& m, std::size_t row) {
       if constexpr (requires { m.find(now, stopped); })
-        if (plan_.due(row, now.time.exact)) m.find(now, stopped);
+        if (due_[row]) m.find(now, stopped);
     });
   }
   void record(const Moment& now, TableSink& put) {
     each([&](auto& m, std::size_t row) {
-      if constexpr (requires(const Due& due) { m.record(now, due, put); })
-        if (const Due due = plan_.due(row, now.time.exact)) m.record(now, due, put);
+      if constexpr (requires { m.record(now, due_[row], put); })
+        if (due_[row]) m.record(now, due_[row], put);
     });
   }
   void record_last(const Moment& now, TableSink& put) {
@@ -102,6 +119,8 @@ template <class... Each> class MeasurementsOf<MeasurementList<Each...>> {
   }
 
  private:
+  Measured measured(std::size_t row) const { return {scene_, engine_, plan_.of[row].samples.size(), exact_}; }
+
   static constexpr std::size_t most_rows = 1 << 14;  // that wait for the sink
 
   static void made(auto& m, const Counts& counts) {
@@ -121,8 +140,11 @@ template <class... Each> class MeasurementsOf<MeasurementList<Each...>> {
   }
 
   const Scene& scene_;
+  AnyEngine& engine_;
   const Schedule& plan_;
+  bool exact_;
   std::tuple<std::optional<Each>...> all_;
+  std::array<Due, sizeof...(Each)> due_ = {};  // at the time that the run has come to
 };
 using Measurements = MeasurementsOf<AllMeasurements>;
 

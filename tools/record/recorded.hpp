@@ -49,9 +49,9 @@ template <class Item> void append(std::vector<Item>& all, std::vector<Item>&& mo
 }
 
 /// What the tables are for. A file has the decimals of types wider than a double, and averages that do not cover their
-/// whole time; what ends by an interruption is continued later. In numbers for statistics and proofs an interrupted run
-/// has its last state instead.
-enum class Tables { for_numbers, for_file };
+/// whole time; what ends by an interruption is continued later. In numbers for proofs an interrupted run has its last
+/// state instead. Statistics take what is measured at planned times, and no texts.
+enum class Tables { for_numbers, for_file, for_statistics };
 
 struct Recorded {
   Group table;  // without numbers
@@ -68,10 +68,13 @@ class TableSink {
   virtual ~TableSink() = default;
 
   bool for_file() const { return tables_ == Tables::for_file; }
+  bool for_statistics() const { return tables_ == Tables::for_statistics; }
   /// Appends rows to the table of that name; the columns are those of the table.
   virtual void add(Group&& rows) = 0;
   /// And, if the columns have texts, to that of the decimals.
   void add(Recorded&& rows);
+  /// The same for a table that gets rows again and again: empties the columns.
+  virtual void add(const Group& table, Columns& rows) { add(Recorded{table, std::exchange(rows, {}), {}}); }
 
  private:
   Tables tables_;

@@ -25,6 +25,7 @@ std::size_t Times::first_after(const Number& time) const {
 }
 
 bool Times::hold(const Number& time) const {
+  if (empty()) return false;
   const std::size_t k = first_from(time);
   return k < size() && !(time < (*this)[k]);
 }
@@ -36,6 +37,7 @@ std::vector<double> Times::rounded() const {
 }
 
 std::optional<RunTime> Times::find(const Number& time) const {
+  if (empty()) return {};
   const std::size_t k = first_from(time);
   if (k == size() || time < (*this)[k]) return {};
   return RunTime(time, decimals_[k]);
@@ -67,12 +69,13 @@ RunTime Schedule::meant(const Number& time) const {
 }
 
 std::optional<Number> Schedule::next(const std::optional<Number>& after) const {
-  std::optional<Number> found;
+  const Times* first = nullptr;
+  std::size_t place = 0;
   for_each([&](const Times& times) {
     const std::size_t k = after ? times.first_after(*after) : 0;
-    if (k < times.size() && (!found || times[k] < *found)) found = times[k];
+    if (k < times.size() && (first == nullptr || times[k] < (*first)[place])) first = &times, place = k;
   });
-  return found;
+  return first == nullptr ? std::nullopt : std::optional((*first)[place]);
 }
 
 std::vector<RequestedTime> Schedule::requested(const Scene& scene, const Number& time) const {

@@ -145,6 +145,13 @@ class SeriesMeasurement {
       if (column.when(of.scene)) entries_.push_back(column.at);
   }
 
+  // Keeps what does not change from run to run. Rows are left only by a run that was broken off.
+  void begin_again() {
+    if (rows_ > 0) values_.clear();
+    for (NumberColumn* column : {&mass_, &x_, &v_}) *column = NumberColumn(exact_);
+    index_.clear();
+    rows_ = 0;
+  }
   void record(const Moment& now, const Due&, TableSink& put) { record_last(now, put); }
   void record_last(const Moment& now, TableSink&) {
     values_.resize(entries_.size(), Numbers());
@@ -166,7 +173,7 @@ class SeriesMeasurement {
   std::size_t rows() const { return rows_; }
   void put_rows(TableSink& put) {
     if (std::exchange(rows_, 0) == 0) return;
-    put.add(Recorded{table_, taken(values_), {}});
+    put.add(table_, values_);
     const auto numbers = [&](NumberColumn& column) { return std::exchange(column, NumberColumn(exact_)); };
     if (clouds_)
       put.add(Recorded{heaviest_table(), columns(numbers(mass_), numbers(x_), numbers(v_), taken(index_)), {}});

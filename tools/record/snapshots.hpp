@@ -20,7 +20,9 @@ class SnapshotMeasurement {
   explicit SnapshotMeasurement(const Measured& of) : exact_(of.exact) {}
 
   void record(const Moment& now, const Due&, TableSink& put) { put.add(rows(now)); }
-  void record_last(const Moment& now, TableSink& put) { put.add(rows(*now.after_last_collision())); }
+  void record_last(const Moment& now, TableSink& put) {
+    if (!put.for_statistics()) put.add(rows(*now.after_last_collision()));
+  }
 
   static auto state(auto& self) { return std::tie(self.written_); }
 

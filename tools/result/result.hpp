@@ -41,6 +41,7 @@ struct Column {
 template <class Rows, class Of> auto numbers_of(const Rows& rows, Of of) {
   using Given = std::remove_cvref_t<decltype(std::invoke(of, *rows.begin()))>;
   std::vector<std::conditional_t<std::is_integral_v<Given>, std::uint64_t, Given>> numbers;
+  numbers.reserve(std::size(rows));
   for (const auto& row : rows) numbers.push_back(std::invoke(of, row));
   return numbers;
 }

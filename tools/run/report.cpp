@@ -248,16 +248,25 @@ std::string guard_message(const ReportedGuard& g, const ReportedAccount& account
                   "before; if it stops here again, please report the scene";
 }
 
-RunEnding::RunEnding(const Scene& scene, const AnyEngine& engine, const Moment& now, Status status) {
-  const Counts& counts = engine.counts();
-  ReportedAccount account = engine.account();
-  const auto found = status == Status::collapsed ? std::optional(engine.collapse()) : std::nullopt;
-  outcome.end = end_of(status, account.order_lost > 0);
-  if (found && !found->settled) outcome.end = scene.run.stop_gap ? RunEnd::small_gap : RunEnd::unproved;
-  outcome.collisions = counts.collisions;
-  outcome.merges = counts.merges;
+RunOutcome outcome_of(const Scene& scene, const AnyEngine& engine, const Moment& now, Status status) {
+  RunOutcome outcome;
+  outcome.end = end_of(status, engine.account().order_lost > 0);
+  if (status == Status::collapsed) {
+    const ReportedCollapse found = engine.collapse();
+    if (!found.settled) outcome.end = scene.run.stop_gap ? RunEnd::small_gap : RunEnd::unproved;
+    outcome.collapsed_at = found.settled ? found.time.value : found.last_collision.value;
+  }
+  outcome.collisions = engine.counts().collisions;
+  outcome.merges = engine.counts().merges;
   outcome.time = now.time.meant.value;
   outcome.energy = now.state().energy.value;
+  return outcome;
+}
+
+RunEnding::RunEnding(const Scene& scene, const AnyEngine& engine, const Moment& now, Status status)
+    : outcome(outcome_of(scene, engine, now, status)) {
+  ReportedAccount account = engine.account();
+  const auto found = status == Status::collapsed ? std::optional(engine.collapse()) : std::nullopt;
   outcome.energy_digits = energy_digits(scene, engine, now);
   if (const auto particle = now.uncertain(); particle && !account.uncertain && status == Status::reached) {
     account.uncertain_end = true;
@@ -265,7 +274,7 @@ RunEnding::RunEnding(const Scene& scene, const AnyEngine& engine, const Moment& 
   }
   outcome.warning = account_warning(account, scene);
   if (status == Status::exhausted)
-    outcome.warning += exhausted_warning(now.time.exact.text(), counts.collisions, scene);
+    outcome.warning += exhausted_warning(now.time.exact.text(), outcome.collisions, scene);
   attributes = {{"simultaneous_collisions", account.simultaneous},
                 {"order_lost", account.order_lost},
                 {"unresolved_gaps", account.unresolved},

@@ -1,4 +1,4 @@
-// What a run says at its end, and how it ends: its outcome, with the collapse that stopped it and the warnings that its
+// How a run ends, and what it says then: its outcome, with the collapse that stopped it and the warnings that its
 // account gives rise to, and the attributes of its result.
 #pragma once
 
@@ -10,6 +10,9 @@
 #include "cradle/tools/run/run.hpp"
 
 namespace cradle::tools {
+
+/// How a run ended, without texts.
+RunOutcome outcome_of(const Scene& scene, const AnyEngine& engine, const Moment& now, Status status);
 
 struct RunEnding {
   RunOutcome outcome;

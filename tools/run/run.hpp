@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -35,6 +36,7 @@ struct RunOutcome {
   std::string report;                        // of a collapse, for standard output; else empty
   std::string warning;                       // what was not resolved, for standard error; else empty
   std::string collapse_time;                 // where the run stopped at a collapse
+  std::optional<double> collapsed_at;        // the same, rounded
   std::uint64_t collisions = 0, merges = 0;  // at the end, like time and energy
   double time = 0, energy = 0;
   double energy_digits = 10;                            // digits of the energy that rounding leaves right

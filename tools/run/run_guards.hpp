@@ -14,6 +14,7 @@ class RunGuards {
  public:
   RunGuards(const Scene& scene, AnyEngine& engine) : scene_(scene), engine_(engine) {}
 
+  void begin_again() { checked_at_ = 0, status_ = {}; }
   /// Checks all particles if that is due. Checks take about a hundredth of the time of the collisions. Whether one is
   /// due depends on the count of collisions, not on the clock, so that a failing run always stops at the same place.
   void check(const Moment& now, bool at_end);

@@ -1,287 +1,149 @@
-// The engine of a run, which advances from one output time to the next, and what is measured there.
-#include "cradle/tools/run/scene_run.hpp"
-
-#include <chrono>
-#include <tuple>
-#include <utility>
-
-#include "cradle/tools/engines/precision.hpp"
-#include "cradle/tools/record/measurements.hpp"
+#include "cradle/tools/run/engine_run.hpp"
 #include "cradle/tools/run/report.hpp"
-#include "cradle/tools/run/run_guards.hpp"
-#include "cradle/tools/run/run_sample.hpp"
-#include "cradle/tools/theory/cost.hpp"
 
 namespace cradle::tools {
 
-namespace {
+void EngineRun::begin_again() {
+  engine_->begin_again();
+  measurements_.begin_again();
+  guards_.begin_again();
+  observe({});  // the counts of another engine
+  inspected_.reset(), now_.reset(), failed_.reset(), over_.reset();
+  time_ = start_, at_collision_ = false;
+}
 
-// What is saved besides the state of the engine, of measurements and of guards: how much of the plan is done.
-struct SavedTimes {
-  std::string time, meant;
-  double rounded = 0;
-  bool at_collision = false;
-  std::optional<std::string> inspected = {};
-  static auto state(auto& self) {
-    return std::tie(self.time, self.meant, self.rounded, self.at_collision, self.inspected);
-  }
-};
+void EngineRun::save(StateSink& to) {
+  require_in_progress();
+  cradle::save(to, std::pair(shape(), precision_name(scene_.run)));
+  engine_->save(to);
+  const auto inspected = inspected_ ? std::optional(inspected_->text()) : std::nullopt;
+  cradle::save(to, SavedTimes{time_.exact.text(), time_.meant.text(), time_.meant.value, at_collision_, inspected});
+  cradle::save(to, *this);
+}
 
-class EngineRun final : public SceneRun {
- public:
-  EngineRun(const Scene& scene, const RunOptions& options, Sink& sink)
-      : SceneRun(scene), options_(options), sink_(sink), round_(rounding(scene)),
-        progress_(options.progress, scene.run.start.value, scene.run.until.value,
-                  options.progress != Progress::Show::never && expected_cost(scene).predictable()),
-        engine_(engine()), plan_(scene),
-        measurements_(scene, *engine_, plan_, sink.for_file() && scene.run.precision != Precision::double_),
-        guards_(scene, *engine_), time_(round_(scene.run.start.text), scene.run.start.text),
-        end_(round_(scene.run.until.text)) {
-    if (options_.interrupt != nullptr) options_.interrupt->heed();
-    observe({});
-    if (StateSource* from = sink.loaded_from()) load(*from);
+void EngineRun::load(StateSource& from) {
+  try {
+    std::pair<std::string, std::string> kind;
+    cradle::load(from, kind);
+    if (kind != std::pair(shape(), precision_name(scene_.run)))
+      throw Error({}, "a checkpoint of another build or precision", "", "continue with the program that wrote it",
+                  Exit::io);
+    engine_->load(from);
+    SavedTimes times;
+    cradle::load(from, times);
+    cradle::load(from, *this);
+    time_ = RunTime(round_(times.time), times.rounded, times.meant);
+    at_collision_ = times.at_collision;
+    inspected_ = times.inspected ? std::optional(round_(*times.inspected)) : std::nullopt;
+  } catch (const std::invalid_argument& error) {
+    throw Error({}, "a checkpoint that cannot be continued", error.what(),
+                "use the program that wrote it, or begin anew", Exit::io);
   }
+  from.end();
+  const Number last = engine_->last_collision_time();
+  guards_.check_loaded(inspected_ && last < *inspected_ ? *inspected_ : last);
+  progress_.continue_from(last.value, engine_->counts().collisions);
+}
 
-  void advance(const Decimal& until) override {
-    const RunTime time = checked(until);
-    computing([&] { stand(pass(time.exact, [this](const Number& to) { return advance_engine(to); }), time); });
-  }
-  std::uint64_t step(std::uint64_t n, const Decimal& until) override {
-    const RunTime time = checked(until);
-    if (n > 0)
-      computing([&] {
-        const Status status = pass(time.exact, [&](const Number& to) {
-          const Status made = engine_->step(n, to, observer_);
-          return made == Status::reached && n == 0 ? Status::interrupted : made;
-        });
-        const bool made = status == Status::interrupted && n == 0;
-        made ? stand_at_last_collision() : stand(status, time);
-      });
-    return n;
-  }
-  void stop() override {
-    require_in_progress();
-    if (failed_) throw *failed_;
-    end_with(Status::interrupted);
-  }
-  /// The observer comes before what records collisions, so that nothing of a collision is recorded if it throws.
-  void observe(CollisionObserver observer) override {
-    observer_ = {};
-    const auto also = [this](CollisionObserver added) {
-      observer_ = observer_ ? [before = observer_, added](const ObservedCollision& c) { before(c), added(c); }
-                            : std::move(added);
-    };
-    if (observer) also(std::move(observer));
-    measurements_.observe(engine_->counts(), sink_, also);
-    if (options_.observer != nullptr)
-      also([this](const ObservedCollision& c) { options_.observer->collision(c.left, c.right, c.time); });
-  }
+std::unique_ptr<AnyEngine> EngineRun::engine() {
+  return begin_engine(scene_,
+                      {.interrupt = [this] { return stopped() || sink_.due(); },
+                       .progress =
+                           [this](double time, const Counts& counts) {
+                             progress_.report(time, counts.collisions);
+                             sink_.count(counts.collisions);
+                           },
+                       .workers = options_.workers,
+                       .observed = scene_.output.observes_collisions() || options_.observer != nullptr || options_.held,
+                       .restitution = options_.restitution});
+}
 
-  const Counts& counts() const override { return engine_->counts(); }
-  Number time() const override { return time_.meant; }
-  Number energy() const override { return engine_->moment(time_, at_collision_)->state().energy; }
-  std::vector<double> column(Column which) override { return now().column(which); }
-  std::vector<std::string> column_text(Column which) override { return now().column_text(which); }
-  const std::vector<ParticleIndex>& index() override { return now().index(); }
-
-  void put_rows() override { measurements_.put_rows(engine_->counts(), sink_); }
-  void save(StateSink& to) override {
-    require_in_progress();
-    cradle::save(to, std::pair(shape(), precision_name(scene_.run)));
-    engine_->save(to);
-    const auto inspected = inspected_ ? std::optional(inspected_->text()) : std::nullopt;
-    cradle::save(to, SavedTimes{time_.exact.text(), time_.meant.text(), time_.meant.value, at_collision_, inspected});
-    cradle::save(to, *this);
+bool EngineRun::sample_at(const Number& time) {
+  std::unique_ptr<Moment> moment = engine_->moment(plan_.meant(time));
+  const Moment& now = *moment;
+  if (measurements_.come_to(time)) guards_.require_held(now, true);
+  try {
+    measurements_.find(now, [this] { return stopped(); });
+  } catch (const WalkStopped&) {
+    return false;
   }
-  void load(StateSource& from) override {
-    try {
-      std::pair<std::string, std::string> kind;
-      cradle::load(from, kind);
-      if (kind != std::pair(shape(), precision_name(scene_.run)))
-        throw Error({}, "a checkpoint of another build or precision", "", "continue with the program that wrote it",
-                    Exit::io);
-      engine_->load(from);
-      SavedTimes times;
-      cradle::load(from, times);
-      cradle::load(from, *this);
-      time_ = RunTime(round_(times.time), times.rounded, times.meant);
-      at_collision_ = times.at_collision;
-      inspected_ = times.inspected ? std::optional(round_(*times.inspected)) : std::nullopt;
-    } catch (const std::invalid_argument& error) {
-      throw Error({}, "a checkpoint that cannot be continued", error.what(),
-                  "use the program that wrote it, or begin anew", Exit::io);
-    }
-    from.end();
-    const Number last = engine_->last_collision_time();
-    guards_.check_loaded(inspected_ && last < *inspected_ ? *inspected_ : last);
-    progress_.continue_from(last.value, engine_->counts().collisions);
-  }
-
-  static auto state(auto& self) { return std::tie(self.measurements_, self.guards_); }
-
- private:
-  // ---- how it advances
-  std::unique_ptr<AnyEngine> engine() {
-    return begin_engine(
-        scene_, {.interrupt = [this] { return stopped() || sink_.due(); },
-                 .progress =
-                     [this](double time, const Counts& counts) {
-                       progress_.report(time, counts.collisions);
-                       sink_.count(counts.collisions);
-                     },
-                 .workers = options_.workers,
-                 .observed = scene_.output.observes_collisions() || options_.observer != nullptr || options_.held,
-                 .restitution = options_.restitution});
-  }
-
-  bool stopped() const { return options_.interrupt != nullptr && options_.interrupt->signal() != 0; }
-  Status advance_engine(const Number& until) {
-    if (stopped()) return Status::interrupted;
-    for (;;) {
-      const Status status = engine_->advance(until, observer_);
-      if (status != Status::interrupted || stopped()) return status;
-      keep(engine_->last_collision_time());
-    }
-  }
-  // Records at every output time up to `until`. `advance(time)` makes the collisions up to a time.
-  template <class Advance> Status pass(const Number& until, const Advance& advance) {
-    for (;;) {
-      const std::optional<Number> next = plan_.next(inspected_);
-      const bool stop = next && !(until < *next);
-      if (!stop && inspected_ && !(*inspected_ < until)) return Status::reached;
-      const Status status = advance(stop ? *next : until);
-      if (status != Status::reached || !stop) return status;
-      if (!sample_at(*next)) return Status::interrupted;
-      progress_.report(next->value, engine_->counts().collisions);
-    }
-  }
-
-  template <class F> void computing(const F& f) {
-    if (failed_) throw *failed_;
-    now_.reset();
-    try {
-      f();
-    } catch (const Error& error) {  // not of a caller's function: the run has failed
-      failed_ = error;
-      throw;
-    } catch (...) {
-      stand_at_last_collision();
-      throw;
-    }
-  }
-  // The time does not step back if there was no collision.
-  void stand_at_last_collision() {
-    const Number last = engine_->last_collision_time();
-    if (last < time_.exact) return;
-    time_ = last, at_collision_ = true;
-  }
-  void stand(Status status, const RunTime& time) {
-    if (status == Status::reached)
-      time_ = time, at_collision_ = false;
-    else
-      stand_at_last_collision();
-    if (status != Status::reached || !(time.exact < end_)) end_with(status);
-  }
-
-  // The time to advance to.
-  RunTime checked(const Decimal& until) const {
-    require_in_progress();
-    const RunTime time(round_(until.text), until.text);
-    if (time.exact < time_.exact)
-      throw Error({scene_.name, 0, ""}, "a time in the past", until.text,
-                  "the run is at t = " + time_.meant.text() + " and goes forward only");
-    if (end_ < time.exact)
-      throw Error({scene_.name, 0, ""}, "a time after the end", until.text,
-                  "the end is run.until = " + scene_.run.until.text);
-    return time;
-  }
-
-  const Moment& now() {
-    if (!now_) now_ = engine_->moment(time_, at_collision_);
-    return *now_;
-  }
-
-  // ---- what goes to the sink
-  std::string shape() const { return engine_->shape() + state_shape<SavedTimes>() + state_shape<EngineRun>(); }
-  // Gives it the recorded rows and, from time to time, the state.
-  void keep(const Number& time, RunIs run_is = RunIs::in_progress) {
+  if (measurements_.series_is_due()) guards_.require_held(now, false);
+  measurements_.record(now, sink_);
+  guards_.check(now, !(time < plan_.last()));
+  inspected_ = time;
+  notify_observer(now, false);
+  sink_.check_clock();
+  if (sink_.due())
+    keep(time);
+  else if (measurements_.many_rows())
     put_rows();
-    const auto saved = [this](StateSink& to) { save(to); };
-    sink_.keep(guards_.status(plan_.meant(time).meant.value), saved, run_is);
+  if (sink_.for_statistics()) now_ = std::move(moment);
+  return true;
+}
+
+// Of a run for statistics.
+void EngineRun::end_in_numbers(Status status) {
+  const bool reached = status == Status::reached;  // with a sample at the end
+  if (!reached) now_ = engine_->moment(engine_->last_collision_time());
+  const Moment& now = *now_;
+  if (!reached) {
+    guards_.require_between_walls(now);
+    guards_.require_held(now, false);
+    measurements_.record_last(now, sink_);
   }
+  put_rows();
+  over_ = outcome_of(scene_, *engine_, now, status);
+  over_->summary = measurements_.finish(now, sink_);
+}
 
-  // ---- what is recorded
-  // Returns false if a signal has stopped a loop over rows, which can be very long; then nothing of this time is
-  // recorded yet.
-  bool sample_at(const Number& time) {
-    const std::unique_ptr<Moment> moment = engine_->moment(plan_.meant(time));
-    const Moment& now = *moment;
-    if (measurements_.need_particles(time)) guards_.require_held(now, true);
-    try {
-      measurements_.find(now, [this] { return stopped(); });
-    } catch (const WalkStopped&) {
-      return false;
-    }
-    if (plan_.series().hold(time)) guards_.require_held(now, false);
-    measurements_.record(now, sink_);
-    guards_.check(now, !(time < plan_.last()));
-    inspected_ = time;
-    notify_observer(now, false);
-    sink_.check_clock();
-    if (sink_.due())
-      keep(time);
-    else if (measurements_.many_rows())
-      put_rows();
-    return true;
+void EngineRun::end_with(Status status) {
+  if (sink_.for_statistics()) return end_in_numbers(status);
+  const bool reached = status == Status::reached, interrupted = status == Status::interrupted;
+  const Number end = reached ? plan_.last() : engine_->last_collision_time();
+  if (reached || interrupted) keep(end, reached ? RunIs::over : RunIs::interrupted);
+  const std::unique_ptr<Moment> moment = engine_->moment(reached ? plan_.meant(end) : RunTime(end));
+  const Moment& now = *moment;
+  if (!reached && !(interrupted && sink_.for_file())) {  // its last state
+    guards_.require_between_walls(now);
+    notify_observer(now, true);
+    guards_.require_held(now, false);
+    measurements_.record_last(now, sink_);
   }
-  void notify_observer(const Moment& now, bool at_collision) {
-    if (options_.observer != nullptr) options_.observer->sample(run_sample(scene_, plan_, *engine_, now, at_collision));
-  }
+  RunEnding ending(scene_, *engine_, now, status);
+  put_rows();
+  ending.outcome.summary = measurements_.finish(now, sink_);
+  if (ending.collapse) sink_.add(std::move(*ending.collapse));
+  ending.outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started_).count();
+  std::vector<Attribute> attributes;
+  if (sink_.for_file()) attributes = provenance(scene_, precision_name(scene_.run), end_row(ending.outcome.end).text);
+  append(attributes, std::move(ending.attributes));
+  sink_.end(std::move(attributes), ending.outcome.end);
+  over_ = std::move(ending.outcome);
+}
 
-  void end_with(Status status) {
-    const bool reached = status == Status::reached, interrupted = status == Status::interrupted;
-    const Number end = reached ? plan_.last() : engine_->last_collision_time();
-    if (reached || interrupted) keep(end, reached ? RunIs::over : RunIs::interrupted);
-    const std::unique_ptr<Moment> moment = engine_->moment(reached ? plan_.meant(end) : RunTime(end));
-    const Moment& now = *moment;
-    if (!reached && !(interrupted && sink_.for_file())) {  // its last state
-      guards_.require_between_walls(now);
-      notify_observer(now, true);
-      guards_.require_held(now, false);
-      measurements_.record_last(now, sink_);
-    }
-    RunEnding ending(scene_, *engine_, now, status);
-    put_rows();
-    ending.outcome.summary = measurements_.finish(now, sink_);
-    if (ending.collapse) sink_.add(std::move(*ending.collapse));
-    ending.outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started_).count();
-    std::vector<Attribute> attributes;
-    if (sink_.for_file()) attributes = provenance(scene_, precision_name(scene_.run), end_row(ending.outcome.end).text);
-    append(attributes, std::move(ending.attributes));
-    sink_.end(std::move(attributes), ending.outcome.end);
-    over_ = std::move(ending.outcome);
-  }
+void EngineRun::observe(CollisionObserver observer) {
+  observer_ = {};
+  const auto also = [this](CollisionObserver added) {
+    observer_ =
+        observer_ ? [before = observer_, added](const ObservedCollision& c) { before(c), added(c); } : std::move(added);
+  };
+  if (observer) also(std::move(observer));
+  measurements_.observe(engine_->counts(), sink_, also);
+  if (options_.observer != nullptr)
+    also([this](const ObservedCollision& c) { options_.observer->collision(c.left, c.right, c.time); });
+}
 
-  RunOptions options_;
-  Sink& sink_;
-  Rounding round_;
-  Progress progress_;
-  std::unique_ptr<AnyEngine> engine_;
-  Schedule plan_;
-  std::optional<Number> inspected_;  // the last time inspected
-  Measurements measurements_;
-  CollisionObserver observer_;
-  RunGuards guards_;
-  std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();
-
-  RunTime time_;
-  Number end_;
-  bool at_collision_ = false;  // the state is the one right after the last collision
-  std::unique_ptr<Moment> now_;
-  std::optional<Error> failed_;
-};
-
-}  // namespace
+RunTime EngineRun::checked(const Decimal& until) const {
+  require_in_progress();
+  const RunTime time(round_(until.text), until.text);
+  if (time.exact < time_.exact)
+    throw Error({scene_.name, 0, ""}, "a time in the past", until.text,
+                "the run is at t = " + time_.meant.text() + " and goes forward only");
+  if (end_ < time.exact)
+    throw Error({scene_.name, 0, ""}, "a time after the end", until.text,
+                "the end is run.until = " + scene_.run.until.text);
+  return time;
+}
 
 void SceneRun::require_in_progress() const {
   if (over_)

@@ -27,6 +27,9 @@ class SceneRun {
   virtual ~SceneRun() = default;
 
   const Scene& scene() const { return scene_; }
+  /// Begins again, from the start, with another replica, whose number the scene now has: a new run, but in the memory
+  /// of this one, for sinks that continue none. After an exception of any function make another run instead.
+  virtual void begin_again() = 0;
   /// Throws Error for a time in the past or after the end, and if the run is over.
   virtual void advance(const Decimal& until) = 0;
   /// Makes the next `n` collisions. If there are fewer up to `until`, makes these, and the run is then at that time.

@@ -71,6 +71,10 @@ class MemorySink : public Sink {
   void end(std::vector<Attribute>&& attributes, RunEnd) override { attributes_ = std::move(attributes); }
 
   std::vector<Group>& tables() { return tables_.tables(); }
+  /// Drops all tables.
+  void clear() {
+    if (!tables().empty()) tables_ = GrowingTables();
+  }
   /// Of a run that is over.
   Result result() const& { return {attributes_, in_order(GrowingTables(tables_))}; }
   Result result() && { return {std::move(attributes_), in_order(std::move(tables_))}; }

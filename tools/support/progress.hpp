@@ -31,7 +31,8 @@ class ProgressLine {
 
   /// Seconds since the line was last drawn, if it is time to draw it again: a few times a second on a terminal, every
   /// minute elsewhere, or every ten seconds if it is always shown. Cheap to call often.
-  std::optional<double> due(Clock::time_point now = Clock::now()) const;
+  std::optional<double> due() const { return active_ ? due(Clock::now()) : std::nullopt; }
+  std::optional<double> due(Clock::time_point now) const;
   void draw(double share, const std::string& state);
 
  private:

@@ -42,9 +42,10 @@ TEST(Ring, PortableLogarithm) {
 }
 
 TEST(Ring, RefusesWhatIsNoRing) {
-  EXPECT_THROW(Ring<double>(0, 1.0, 1.0, still, still), std::invalid_argument);
-  EXPECT_THROW(Ring<double>(3, 0.0, 1.0, still, still), std::invalid_argument);
-  EXPECT_THROW(Ring<double>(3, 1.0, 0.0, still, still), std::invalid_argument);
+  const VelocityDraw draw = gaussian_velocity(1, 0);
+  EXPECT_THROW(Ring<double>(0, 1.0, 1.0, draw, still), std::invalid_argument);
+  EXPECT_THROW(Ring<double>(3, 0.0, 1.0, draw, still), std::invalid_argument);
+  EXPECT_THROW(Ring<double>(3, 1.0, 0.0, draw, still), std::invalid_argument);
   EXPECT_THROW(List<double>({0, 1}, {0, 0}, {}, 1.0), std::invalid_argument);
 }
 

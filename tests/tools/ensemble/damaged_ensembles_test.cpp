@@ -47,18 +47,28 @@ TEST(DamagedRecords, AreRefused) {
   };
   constexpr std::uint64_t beyond = std::uint64_t{1} << 63;
   const tools::EnsembleState state("", scene, {});
-  tools::ReplicaRow row;
-  const std::vector<double> values(state.layout().entries, 1.);
-  EXPECT_NO_THROW(tools::EnsembleState("", scene, {})
-                      .apply(tools::from_bytes<tools::EnsembleRecord>(
-                          tools::to_bytes(tools::EnsembleRecord{0, tools::ReplicaRecord{row, values}}))));
-  row.outcome = tools::RunEnd::undecided;
-  EXPECT_TRUE(has(refused({0, tools::ReplicaRecord{row, values}}), "no outcome of a replica"));
-  row = {};
-  row.index = beyond;
-  EXPECT_TRUE(has(refused({0, tools::ReplicaRecord{row, values}}), "a replica beyond the last"));
-  EXPECT_TRUE(has(refused({0, tools::FailureRecord{beyond, "lost"}}), "a replica beyond the last"));
-  EXPECT_TRUE(has(refused({0, tools::SpreadRecord{0, {1, 2, 3}}}), "3 counts for the spread 0"));
+  const auto replica = [&](std::uint64_t index, tools::RunEnd outcome = tools::RunEnd::reached) {
+    tools::EnsembleRecord record;
+    tools::ReplicaRow row;
+    row.index = index, row.outcome = outcome;
+    state.put(record, row, std::vector<double>(state.layout().entries, 1.));
+    return record;
+  };
+  EXPECT_NO_THROW(
+      tools::EnsembleState("", scene, {}).apply(tools::from_bytes<tools::EnsembleRecord>(tools::to_bytes(replica(0)))));
+  EXPECT_TRUE(has(refused(replica(0, tools::RunEnd::undecided)), "no outcome of a replica"));
+  EXPECT_TRUE(has(refused(replica(beyond)), "a replica beyond the last"));
+  tools::EnsembleRecord failed;
+  state.put_failure(failed, beyond, "lost");
+  EXPECT_TRUE(has(refused(failed), "a replica beyond the last"));
+  EXPECT_TRUE(has(refused({.spreads = {{1, 2, 3}}}), "3 counts for the spread 0"));
+  tools::EnsembleRecord of_others = replica(0);
+  of_others.rows = tools::ReplicaTable(7);
+  of_others.rows.add({});
+  EXPECT_TRUE(has(refused(of_others), "7 numbers a row"));
+  tools::EnsembleRecord spread = replica(0);
+  spread.to_spread = {1};
+  EXPECT_TRUE(has(refused(spread), "1 numbers for spreads"));
 }
 
 TEST_F(DamagedEnsembles, AreRefused) {

@@ -97,7 +97,9 @@ TEST_F(Ensembles, JournalWrittenAnewGivesTheSameBytes) {
     for (std::uint64_t k = 0; k < 64; ++k) {
       const tools::RunOutcome end =
           tools::run_scene(tools::replica_scene(study.scene, k), {tools::ProgressLine::Show::never});
-      store.add({0, tools::ReplicaRecord{layout.row(k, end), layout.values(end)}});
+      tools::EnsembleRecord one;
+      store.states()[0]->put(one, layout.row(k, end), layout.values(end));
+      store.add(std::move(one));
     }
     EXPECT_LT(std::filesystem::file_size(folder / "anew.h5.part"), 32 * 8 * layout.entries) << "64 vectors otherwise";
   }

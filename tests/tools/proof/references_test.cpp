@@ -236,9 +236,10 @@ template <class T> T root(const T& x) {
 template <class T> void put_ring(const Initial& initial, Gas<T>& gas) {
   const auto particles = static_cast<std::int64_t>(initial.particles);
   gas.length = of<T>(initial.length);
-  const VelocityDraw draw = initial.velocities == Velocities::gaussian
-                                ? gaussian_velocity(initial.seed, initial.replica)
-                                : uniform_velocity(initial.seed, initial.replica);
+  const auto paces = drawn(initial.velocities == Velocities::gaussian ? gaussian_velocity(initial.seed, initial.replica)
+                                                                      : uniform_velocity(initial.seed, initial.replica),
+                           0, particles);
+  const auto draw = [&](std::int64_t b) { return paces[static_cast<std::size_t>(b)]; };
   bool identical = true;
   std::int64_t sum = 0;
   T momentum(0), mass(0);
@@ -258,7 +259,8 @@ template <class T> void put_ring(const Initial& initial, Gas<T>& gas) {
 template <class T> void put_cold(const Initial& initial, Gas<T>& gas) {
   const auto particles = static_cast<std::int64_t>(initial.particles), hot = static_cast<std::int64_t>(initial.hot);
   const std::int64_t first = initial.place == tools::scene::HotPlace::left ? 0 : (particles - hot) / 2;
-  const VelocityDraw draw = gaussian_velocity(initial.seed, initial.replica);
+  const auto paces = drawn(gaussian_velocity(initial.seed, initial.replica), first, hot);
+  const auto draw = [&](std::int64_t b) { return paces[static_cast<std::size_t>(b - first)]; };
   T momentum(0), mass(0), twice(0);
   for (std::int64_t b = first; b < first + hot; ++b)
     momentum += mass_of<T>(initial, b) * T(draw(b)), mass += mass_of<T>(initial, b);

@@ -15,13 +15,12 @@ TEST_F(Ensembles, SecondOfTwoThatBeginAfreshIsRefused) {
   options.replicas = {0, 4};
   options.threads = 1;
   options.progress = tools::ProgressLine::Show::never;
-  const auto runner = options.runner;
   options.runner = [&](const Scene& replica, const tools::RunOptions& how) {
     if (second.status == -1) {
       EXPECT_FALSE(exists("a.h5"));
       second = shell("cradle ensemble shock.toml --first 4 --replicas 4 -o a.h5");
     }
-    return runner(replica, how);
+    return tools::run_scene(replica, how);
   };
   EXPECT_EQ(tools::run_ensemble(scene("shock.toml"), options, path("a.h5")).status, Exit::done);
   EXPECT_EQ(second.status, 4);

@@ -1,0 +1,54 @@
+// Velocities that are drawn several at once, against the same method one number after the other.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "cradle/core/initial/velocities.hpp"
+
+namespace cradle::tests::velocities_test {
+
+// Marsaglia's polar method for one particle.
+std::int64_t one_gaussian(std::uint64_t seed, std::uint64_t replica, ParticleIndex particle) {
+  for (std::uint64_t attempt = 1;; ++attempt) {
+    const std::uint64_t bits = random_bits(seed, replica, static_cast<std::uint64_t>(particle) | attempt << 56);
+    const double u = (static_cast<double>(bits >> 32) + 0.5) * 0x1p-31 - 1;
+    const double v = (static_cast<double>(bits & 0xFFFFFFFF) + 0.5) * 0x1p-31 - 1;
+    const double square = u * u + v * v;
+    if (square >= 1) continue;
+    const double normal = u * std::sqrt(-2 * detail::portable_log(square) / square);
+    return static_cast<std::int64_t>(std::floor(normal * static_cast<double>(displacement_unit) + 0.5));
+  }
+}
+
+TEST(Velocities, AreThoseThatAreDrawnOneByOne) {
+  const std::uint64_t large = 0xFEDCBA9876543210;
+  for (const auto& [seed, replica] : {std::pair<std::uint64_t, std::uint64_t>{1, 0}, {large, ~large}})
+    for (const ParticleIndex first : {ParticleIndex{0}, (ParticleIndex{1} << 31) - 5000})
+      for (const ParticleIndex count : {0, 1, 2, 3, 4, 5, 7, 4999}) {
+        const std::vector<std::int64_t> all = drawn(gaussian_velocity(seed, replica), first, count);
+        for (ParticleIndex k = 0; k < count; ++k)
+          ASSERT_EQ(all[static_cast<std::size_t>(k)], one_gaussian(seed, replica, first + k)) << first << " " << k;
+      }
+}
+
+TEST(Velocities, UniformOnesDoNotDependOnTheFirstParticle) {
+  const std::vector<std::int64_t> all = drawn(uniform_velocity(3, 4), 0, 100),
+                                  part = drawn(uniform_velocity(3, 4), 90, 10);
+  for (std::size_t k = 0; k < part.size(); ++k) EXPECT_EQ(part[k], all[90 + k]);
+}
+
+// Numbers at the ends of the range, which no draw of a test comes to.
+TEST(Velocities, OfAllBitsAreExact) {
+  namespace lanes = detail::lanes;
+  for (const std::uint64_t all :
+       {0x80000000'80000000, 0x7FFFFFFF'80000000u, 0x80000000'00000001, 0xB504F333'7FFFFFFF}) {
+    const lanes::Polar of = lanes::polar(lanes::Words{} + all);
+    const double u = (static_cast<double>(all >> 32) + 0.5) * 0x1p-31 - 1;
+    const double v = (static_cast<double>(all & 0xFFFFFFFF) + 0.5) * 0x1p-31 - 1, square = u * u + v * v;
+    const double normal = u * std::sqrt(-2 * detail::portable_log(square) / square);
+    EXPECT_EQ(of.square[0], square);
+    EXPECT_EQ(of.velocity[0], static_cast<std::int64_t>(std::floor(normal * 0x1p28 + 0.5)));
+  }
+}
+
+}  // namespace cradle::tests::velocities_test

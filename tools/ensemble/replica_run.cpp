@@ -1,0 +1,81 @@
+#include "cradle/tools/ensemble/replica_run.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace cradle::tools {
+
+void ReplicaRun::Numbers::add(const Group&, Columns& rows) {
+  series.resize(rows.size());
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const auto put = [&](auto& values) {
+      series[k].insert(series[k].end(), values.begin(), values.end());
+      values.clear();
+    };
+    if (auto* numbers = std::get_if<NumberColumn>(&rows[k]))
+      put(numbers->values);
+    else if (auto* whole = std::get_if<std::vector<std::uint64_t>>(&std::get<tools::Numbers>(rows[k])))
+      put(*whole);
+    else
+      put(std::get<std::vector<double>>(std::get<tools::Numbers>(rows[k])));
+  }
+}
+
+void ReplicaRun::Numbers::begin_again() {
+  for (std::vector<double>& column : series) column.clear();
+  clear();
+}
+
+ReplicaRun::ReplicaRun(const EnsembleState& ensemble, const ReplicaRunner& runner, Interrupt& interrupt)
+    : ensemble_(ensemble), runner_(runner), options_{Progress::Show::never, nullptr, &interrupt},
+      scene_(replica_scene(ensemble.scene(), 0)) {}
+
+// With all of its tables.
+RunOutcome ReplicaRun::whole_run() const { return runner_ ? runner_(scene_, options_) : run_scene(scene_, options_); }
+
+const RunOutcome& ReplicaRun::run_again() {
+  numbers_.begin_again();
+  if (run_)
+    run_->begin_again();
+  else
+    run_ = begin_run(scene_, options_, numbers_);
+  run_->advance(scene_.run.until);
+  return *run_->over();
+}
+
+void ReplicaRun::add(ReplicaIndex replica, EnsembleRecord& to) {
+  const ReplicaLayout& layout = ensemble_.layout();
+  scene_.initial.replica = replica;
+  ReplicaTables kept;
+  try {
+    const auto finished = [&](const RunOutcome& run) {
+      if (run.end == RunEnd::interrupted) throw ReplicaAbandoned();
+      layout.put_row(replica, run, row_);
+    };
+    if (runner_ || scene_.output.every_replica || scene_.initial.type == InitialType::clusters) {
+      const RunOutcome run = whole_run();
+      finished(run);
+      values_ = layout.values(run);
+      if (scene_.output.every_replica) kept = kept_tables(replica, run.result);
+    } else {
+      const RunOutcome& run = run_again();
+      finished(run);
+      layout.put_values(run.end, numbers_.series, numbers_.tables(), values_);
+    }
+    for (const double value : values_)
+      if (std::isinf(value))
+        throw Error({}, "a number beyond the range of a double, in which statistics are", fmt::format("{}", value),
+                    "give other units of length or speed");
+  } catch (const ReplicaAbandoned&) {
+    run_.reset();
+    throw;
+  } catch (...) {
+    run_.reset();
+    return ensemble_.put_failure(to, replica, message_of_exception());
+  }
+  ensemble_.put(to, row_, values_);
+  if (!kept.empty()) to.kept.emplace(replica, std::move(kept));
+}
+
+}  // namespace cradle::tools

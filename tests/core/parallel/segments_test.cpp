@@ -1,6 +1,7 @@
 // One run in segments. Proves: for all cuts, ghosts, time slabs and threads, a run has the bits of the plain loop at
 // every time at which it stops, and an observer receives the same collisions in the same order; with laws, masses,
-// lines, rows and rings, simultaneous collisions, collapsed cores and time slabs that fail at every cut.
+// lines, rows and rings, gravity and shaken walls, simultaneous collisions, collapsed cores and time slabs that fail at
+// every cut.
 #include <gtest/gtest.h>
 
 #include "cradle/tests/core/segmented.hpp"
@@ -53,6 +54,16 @@ TYPED_TEST(Cells, UnequalMassesOnALine) { expect_same<IndividualMasses>(this->li
 TYPED_TEST(Cells, UnequalMassesOnARing) { expect_same<IndividualMasses>(this->ring(true), {10, 60}); }
 TYPED_TEST(Cells, ParticlesThatMergeOnARing) { expect_same_clusters(this->ring()); }
 TYPED_TEST(Cells, UnequalParticlesThatMergeOnARing) { expect_same_clusters(this->ring(true)); }
+// Cuts beside walls and far from them, and walls among the ghosts.
+TYPED_TEST(Cells, ColumnsAndShakenWalls) {
+  for (const Scene<TypeParam>& scene : lines_at_curved_walls<TypeParam>(600)) {
+    SCOPED_TRACE("acceleration " + std::to_string(to_double(scene->acceleration())));
+    expect_same<IdenticalMasses>(scene, {90, 170});
+  }
+}
+TYPED_TEST(Cells, UnequalMassesInColumns) {
+  expect_same<IndividualMasses>(lines_at_curved_walls<TypeParam>(600, true).front(), {170});
+}
 // Collisions are simultaneous all over the line; the time slabs that hold such are for the plain loop, or for exact
 // times.
 TYPED_TEST(Cells, LatticesFullOfTies) { expect_same<IdenticalMasses>(lattice_rows<TypeParam>(1200), {520, 550, 551}); }

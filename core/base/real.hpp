@@ -38,7 +38,12 @@ template <Real T> double to_double(const T& x) { return static_cast<double>(x); 
 template <Real T> bool is_negative(const T& x) { return x < T(0); }
 template <Real T> bool is_positive(const T& x) { return x > T(0); }
 
-template <Real T> T magnitude(const T& x) { return is_negative(x) ? T(-x) : x; }
+template <Real T> T magnitude(const T& x) {
+  if constexpr (std::floating_point<T>)
+    return std::abs(x);
+  else
+    return is_negative(x) ? T(-x) : x;
+}
 
 // Neither infinite nor NaN: for those x - x is not 0.
 template <Real T> bool is_finite(const T& x) { return x - x == T(0); }

@@ -194,12 +194,8 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain : public Gap
         watch_threshold(s, time, w, wall_gaps_.rest_speed(particle(s)));
         if constexpr (requires { law.cutoff(); }) watch_threshold(s, time, w, law.cutoff());
       }
-      const bool stays = wall_gaps_.holds(particle(s), w, elapsed),
-                 elastic = !stays && (!rested || below_cutoff(law, w));
-      const T restitution = stays ? T(0) : elastic ? T(1) : walls_.wall(wall).restitution;
-      Outcome<T> outcome = walls_.strike(wall, w, mass, restitution, wall_gaps_.shaken_at(wall, elapsed));
-      outcome.below_cutoff = elastic && walls_.wall(wall).reflects();
-      return outcome;
+      return wall_gaps_.strike_wall(walls_, wall, law, w, mass, elapsed, wall_gaps_.holds(particle(s), w, elapsed),
+                                    rested);
     }
     return walls_.strike(particle(s), closing(s), line_.masses[walls_.left_of(particle(s)) ? s + 1 : s]);
   }
@@ -261,8 +257,7 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain : public Gap
             more |= wall_gaps_.renew(line_, slot_in_pile(h), time) | Notice::origin_must_move;  // which predicts them
       return more;
     };
-    CollisionResult<T> made = wall_gaps_.strike(line_, s - 1, s, s + 1, time, of_law, notice, after, renew);
-    if (const auto back = rebound(s); back && back->height < line_.gaps.floor()) made.notice |= Notice::gap_below_floor;
+    const CollisionResult<T> made = wall_gaps_.strike(line_, s - 1, s, s + 1, time, of_law, notice, after, renew);
     find_inner();
     return made;
   }

@@ -69,11 +69,8 @@ template <Real T> class Gravity {
   }
   // The approach of a gap that it pulls; `since` is a time since the start.
   WallApproach<T> approach(ParticleIndex gap, const T& size, const T& closing, const Pair<T>& since) const {
-    const End end = end_at(gap);
-    const HoldingWall<T>& wall = at(end).wall;
-    if (!piles_ || resting_ > 0) return {size, closing, pull(end), splitter_, wall, since};
-    return {size, closing, pull(end), splitter_, {wall.motion, false, std::nullopt},
-            since};  // it comes to rest in a collision only
+    const End end = end_at(gap);  // where several can rest, one comes to rest in a collision only
+    return {size, closing, pull(end), splitter_, at(end).wall, since, !piles_ || resting_ > 0};
   }
   // Whether a particle that meets the wall, or the pile on it, at this speed stays there.
   bool holds(ParticleIndex gap, const T& speed, const Pair<T>& elapsed) const {
@@ -95,8 +92,8 @@ template <Real T> class Gravity {
   // The speed towards the particles at which the wall at a gap is shaken.
   T shaken_at(ParticleIndex gap, const Pair<T>& elapsed) const {
     if (!at_wall(gap)) return T(0);
-    const WallMotion<T>* motion = at(end_at(gap)).wall.motion;
-    return motion != nullptr ? motion->speed(motion->at(elapsed).rest) : T(0);
+    const HoldingWall<T>& wall = at(end_at(gap)).wall;
+    return wall.motion != nullptr ? wall.at(elapsed).wall.speed : T(0);
   }
 
   static auto state(auto& self) { return std::tie(self.resting_); }
@@ -118,7 +115,7 @@ template <Real T> class Gravity {
     const T pull = end == End::left ? T(-particles.acceleration()) : particles.acceleration();
     const WallMotion<T>* motion = wall->motion.get();
     return {end == End::left ? -1 : particles.count() - 1,
-            {motion, wall->holds(), motion != nullptr ? motion->release(pull) : std::nullopt},
+            {motion, wall->holds(), motion != nullptr ? motion->release(pull) : std::nullopt, {}},
             wall->rest_speed};
   }
 

@@ -64,8 +64,9 @@ template <Real T, class Masses> class HeldGaps {
   }
   // The closing speed at the next collision.
   T closing_when_due(Slot s) const {
-    if (wall_gaps_.pulls(particle(s))) return wall_gaps_.approach(line_, s).meeting_speed().value_or(T(0));
-    return closing(s);
+    if (!wall_gaps_.pulls(particle(s))) return closing(s);
+    const auto meeting = wall_gaps_.meeting(line_, s);
+    return meeting ? meeting->speed : T(0);
   }
 
   // Collisions after which a neighbouring gap is below `floor` are noticed (gap_below_floor).
@@ -106,6 +107,7 @@ template <Real T, class Masses> class HeldGaps {
   // ---- for segments (segments.hpp)
   const Particles<T>& particles() const { return *particles_; }
   const Line& line() const { return line_; }
+  const WallGaps<Line>& wall_gaps() const { return wall_gaps_; }
   void lose(const Ledger<T>& elsewhere) { line_.gaps.lose(elsewhere); }
   ParticleIndex place(Slot s) const { return particle(s); }  // in the order of the line, for any numbering of slots
   // Slots free for particles that the fronts reach.

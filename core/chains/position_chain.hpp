@@ -263,9 +263,9 @@ template <Real T> class PositionChain {
     closing_[s] = velocity(s, now) - velocity(s + 1, now);
     if (field_.pulls(particle(s))) {
       const WallApproach<T> approach = field_.approach(particle(s), gap_at(s, now), closing_[s], since_start(now));
-      const auto wait = approach.meeting_in();
-      closing_[s] = wait ? approach.meeting_speed().value_or(T(0)) : T(-1);
-      due_[s] = wait ? T(now + *wait) : T(0);
+      const auto meeting = approach.meeting();
+      closing_[s] = meeting ? meeting->speed : T(-1);
+      due_[s] = meeting ? T(now + meeting->in) : T(0);
       return;
     }
     due_[s] = closing_[s] > T(0) ? T(now + gap_at(s, now) / closing_[s]) : T(0);

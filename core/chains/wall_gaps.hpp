@@ -2,6 +2,7 @@
 // `WallGaps` makes what happens at the gaps to walls, and at the gap above a pile, under gravity (gravity.hpp) or where
 // a wall is shaken: those gaps of a line (gap_line.hpp) are curves in time. Nothing here is on the hot path.
 
+#include <array>
 #include <optional>
 #include <utility>
 
@@ -16,7 +17,8 @@ template <class Line> class WallGaps : public Gravity<typename Line::Scalar> {
 
  public:
   using Field::approach, Field::anywhere, Field::pulls, Field::at_wall, Field::may_miss, Field::above_pile;
-  using Field::approach_pile, Field::height, Field::pile_end, Field::resting, Field::rest;
+  using Field::approach_pile, Field::rebound, Field::shaken_at, Field::height, Field::pile_end, Field::resting,
+      Field::rest;
   using Field::Field;
 
   // Calls f with the motion of the gaps of a line, some of which may be pulled or not.
@@ -49,10 +51,22 @@ template <class Line> class WallGaps : public Gravity<typename Line::Scalar> {
   T closing_at(const Line& line, Slot s, const T& time) const {
     return approach(line, s).closing_after(line.gaps.flown(s, time), line.gaps.clock().since_start(time));
   }
-  // The next collision there, a local time; nothing if there is none.
+  // The next collision there; nothing if there is none. At a wall the last answer is kept: it is asked for again when
+  // the collision is made, and when the origin of time has moved.
+  std::optional<Meeting<T>> meeting(const Line& line, Slot s) const {
+    if (above_pile(line.particle(s))) return approach(line, s).meeting();
+    const T &gap = line.gaps[s].gap, &closing = line.closing(s);
+    const Pair<T> since = line.gaps.since_start(s);
+    auto& last = last_[line.particle(s) < 0 ? 0 : 1];
+    if (!last || !(last->gap == gap && last->closing == closing && last->since.high == since.high &&
+                   last->since.low == since.low && last->resting == resting()))
+      last = {gap, closing, since, resting(), approach(line, s, gap, closing).meeting()};
+    return last->meeting;
+  }
+  // Its local time.
   std::optional<T> due(const Line& line, Slot s) const {
-    const std::optional<T> wait = approach(line, s).meeting_in();
-    return wait ? std::optional<T>(line.gaps.after(s, *wait)) : std::nullopt;
+    const auto next = meeting(line, s);
+    return next ? std::optional<T>(line.gaps.after(s, next->in)) : std::nullopt;
   }
   double queue_due(const Line& line, Slot s) const {
     const std::optional<T> time = due(line, s);
@@ -64,6 +78,17 @@ template <class Line> class WallGaps : public Gravity<typename Line::Scalar> {
     if constexpr (Line::Gaps::keys_are_exact) line.gaps[s].due = time;
     return time;
   }
+  // What comes of a collision at the speed w with a wall, which is at the end of the gap; elastic below the law's
+  // cut-off.
+  template <class Law>
+  Outcome<T> strike_wall(Walls<T>& walls, ParticleIndex gap, const Law& law, const T& w, const T& mass,
+                         const Pair<T>& elapsed, bool stays = false, bool rested = true) const {
+    const bool elastic = !stays && (!rested || below_cutoff(law, w));
+    const T restitution = stays ? T(0) : elastic ? T(1) : walls.wall(gap).restitution;
+    Outcome<T> outcome = walls.strike(gap, w, mass, restitution, shaken_at(gap, elapsed));
+    outcome.below_cutoff = elastic && walls.wall(gap).reflects();
+    return outcome;
+  }
   // The effect of a collision at a wall or beside the gap to one, off the hot path. `pile` particles are in the pile
   // after it; one that comes to rest on others does not move them. `renew` is called while the pile is as it was.
   template <class Renew>
@@ -74,8 +99,8 @@ template <class Line> class WallGaps : public Gravity<typename Line::Scalar> {
     const bool with_wall = at_wall(line.particle(s)), lands = pile > resting() && resting() > 0;
     const bool to_left = !lands || pile_end() == End::right, to_right = !lands || pile_end() == End::left;
     if constexpr (Line::watched) {
-      const T w =
-          pulls(line.particle(s)) ? approach(line, s).meeting_speed().value_or(line.closing(s)) : line.closing(s);
+      const auto next = pulls(line.particle(s)) ? meeting(line, s) : std::nullopt;
+      const T w = next ? next->speed : line.closing(s);
       line.certainty.collision(line.gaps, Curved{line, *this}, p, s, n, line.particle(s), time, w, outcome,
                                line.masses.of_pair(s), line.exact_sums(), {to_left, to_right});
     }
@@ -99,6 +124,9 @@ template <class Line> class WallGaps : public Gravity<typename Line::Scalar> {
     };
     if constexpr (Line::watched)
       if (with_wall) watch_meeting(line, s, time);
+    if (const auto back = rebound(line.particle(s), line.closing(s), line.gaps.since_start(s));
+        back && back->height < line.gaps.floor())
+      notice |= Notice::gap_below_floor;
     return {outcome, predict(p), with_wall ? foresee(line, s) : EventQueue::never, predict(n), notice, p, n};
   }
 
@@ -111,15 +139,9 @@ template <class Line> class WallGaps : public Gravity<typename Line::Scalar> {
   // Whether rounding decides that a pulled gap meets its wall, or at which of two times. A floor at rest is always met.
   void watch_meeting(Line& line, Slot s, const T& time) {
     if (!may_miss(line.particle(s))) return;
-    struct Meeting {
-      T in, speed;
-    };
-    line.certainty.meeting(
-        line.gaps, s, line.particle(s), time, [&](const T& less, const T& faster) -> std::optional<Meeting> {
-          const WallApproach<T> open = approach(line, s, T(line.gaps[s].gap - less), T(line.closing(s) + faster));
-          const std::optional<T> in = open.meeting_in();
-          return in ? std::optional<Meeting>({*in, open.meeting_speed().value_or(T(0))}) : std::nullopt;
-        });
+    line.certainty.meeting(line.gaps, s, line.particle(s), time, [&](const T& less, const T& faster) {
+      return approach(line, s, T(line.gaps[s].gap - less), T(line.closing(s) + faster)).meeting();
+    });
   }
 
  private:
@@ -162,6 +184,14 @@ template <class Line> class WallGaps : public Gravity<typename Line::Scalar> {
     if (line.gaps.below_floor(s)) return line.gaps.note(s, T(mean + gain), gain, since, struck, line.particle(s), time);
     return Notice::none;
   }
+
+  struct Answer {
+    T gap, closing;
+    Pair<T> since;
+    ParticleIndex resting;
+    std::optional<Meeting<T>> meeting;
+  };
+  mutable std::array<std::optional<Answer>, 2> last_{};  // at the left wall and at the right one
 };
 
 }  // namespace cradle

@@ -58,7 +58,7 @@ class Simulation : public Readings<Chain> {
     return make_collisions();
   }
   // Does the same in segments (segments.hpp). The plain loop is used instead if the run may stop at a collision, if the
-  // law has memory, or if anything falls or is shaken.
+  // law has memory, or if particles can rest on a wall.
   template <class Segments>
   requires requires { typename Segments::TimeSlab; }
   Status advance(const T& until, Segments& segments) {
@@ -149,7 +149,7 @@ class Simulation : public Readings<Chain> {
     next_.begin_again(chain_);
     aim();
   }
-  bool plain_only() const { return policy_.collapse == CollapsePolicy::stop || has_memory<T>(law_) || falls(); }
+  bool plain_only() const { return policy_.collapse == CollapsePolicy::stop || has_memory<T>(law_) || can_rest(); }
 
   [[gnu::noinline]] Status make_collisions() {
     while (step()) continue;

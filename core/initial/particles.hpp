@@ -62,8 +62,8 @@ template <Real T> class Particles {
   Shift shift(ParticleIndex particle, const Pair<T>& elapsed) const {
     if (!shaken(particle)) return {};
     const WallMotion<T>& motion = *wall_at(particle)->motion;
-    const T y = motion.at(elapsed).rest, x = motion.place(y), v = motion.speed(y);
-    return particle < 0 ? Shift{x, v} : Shift{T(-x), T(-v)};
+    const Displaced<T> wall = motion.moment(elapsed).wall;
+    return particle < 0 ? Shift{wall.place, wall.speed} : Shift{T(-wall.place), T(-wall.speed)};
   }
 
   // The constant acceleration of all particles, positive to the right. Walls do not fall.

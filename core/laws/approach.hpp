@@ -49,6 +49,18 @@ template <RoundsToNearest T> Pair<T> exact_product(const T& a, const T& b, const
   const T product = a * b;
   return {product, T(((l.high * r.high - product) + l.high * r.low + l.low * r.high) + l.low * r.low)};
 }
+#ifdef __FMA__
+// Fused operations give the same bits where the rest is in range.
+inline Pair<double> exact_product(double a, double b, double splitter) {
+  const double product = a * b, size = std::abs(product);
+  if (!(size > 0x1p-900 && size < 0x1p900 && std::abs(a) < 0x1p900 && std::abs(b) < 0x1p900)) [[unlikely]]
+    return exact_product<double>(a, b, splitter);
+  return {product, std::fma(a, b, -product)};
+}
+#endif
+
+// A collision: the time until then, and its speed.
+template <Real T> struct Meeting { T in, speed; };
 
 template <Real T> class Approach {
  public:
@@ -62,8 +74,19 @@ template <Real T> class Approach {
   T gap_after(const T& time) const { return gap_ - mean_closing(time) * time; }
   const T& pull() const { return pull_; }
 
-  // The speed at which the particle meets the wall; nothing if it does not. A gap that rounding has left below zero is
+  // When the particle meets the wall, and how fast; nothing if it does not. A gap that rounding has left below zero is
   // met in the past if it closes, and at a floor also where it will have the same size again.
+  std::optional<Meeting<T>> meeting() const {
+    const std::optional<T> speed = meeting_speed();
+    if (!speed) return {};
+    const T sum = *speed + magnitude(closing_);
+    if (at_rest_or_leaving()) return Meeting<T>{T(sum / pull_), *speed};
+    if (is_negative(closing_)) return Meeting<T>{refined(T(sum / pull_), *speed), *speed};
+    return Meeting<T>{is_positive(sum) ? refined(T((gap_ + gap_) / sum), *speed) : T(0), *speed};
+  }
+
+ private:
+  bool at_rest_or_leaving() const { return gap_ == T(0) && !is_positive(closing_); }
   std::optional<T> meeting_speed() const {
     if (at_rest_or_leaving() && is_positive(pull_)) return T(-closing_);
     if (!is_positive(pull_) && !is_positive(closing_)) return {};
@@ -72,18 +95,6 @@ template <Real T> class Approach {
     if (is_positive(pull_)) return magnitude(closing_);
     return {};
   }
-  // The time until then.
-  std::optional<T> meeting_in() const {
-    const std::optional<T> speed = meeting_speed();
-    if (!speed) return {};
-    const T sum = *speed + magnitude(closing_);
-    if (at_rest_or_leaving()) return T(sum / pull_);
-    if (is_negative(closing_)) return refined(T(sum / pull_), *speed);
-    return is_positive(sum) ? refined(T((gap_ + gap_) / sum), *speed) : T(0);
-  }
-
- private:
-  bool at_rest_or_leaving() const { return gap_ == T(0) && !is_positive(closing_); }
 
   // The root of D, 0 if D is negative.
   T speed_there() const {

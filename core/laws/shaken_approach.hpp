@@ -32,19 +32,12 @@ template <Real T> class ShakenApproach {
   struct State {
     T gap, closing;
   };
-  struct Meeting {
-    T in, speed;
-  };
 
-  // As an Approach, with the motion of the wall and the time since the start.
+  // As an Approach, with the motion of the wall and its moment now. `open`: how long the gap surely does not close.
   ShakenApproach(const T& gap, const T& closing, const T& pull, const T& splitter, const WallMotion<T>& motion,
-                 const Pair<T>& since)
-      : ShakenApproach(gap, closing, pull, splitter, motion, since, motion.at(since), T(0)) {}
-  // With the phase at that time; `open`: how long the gap surely does not close.
-  ShakenApproach(const T& gap, const T& closing, const T& pull, const T& splitter, const WallMotion<T>& motion,
-                 const Pair<T>& since, const Phase<T>& phase, const T& open)
-      : gap_(gap), closing_(closing), pull_(pull), splitter_(splitter), motion_(motion), since_(since), phase_(phase),
-        place_(motion.place(phase.rest)), speed_(motion.speed(phase.rest)), open_(open) {}
+                 const WallMoment<T>& now, const T& open = T(0))
+      : gap_(gap), closing_(closing), pull_(pull), splitter_(splitter), motion_(motion), since_(now.elapsed),
+        turns_(now.turns), phase_(now.phase), place_(now.wall.place), speed_(now.wall.speed), open_(open) {}
 
   // After a time; `now` is then the time since the start.
   State after(const T& time, const Pair<T>& now) const {
@@ -58,12 +51,12 @@ template <Real T> class ShakenApproach {
     case Shape::parabola:
       return on_arcs(time, now);
     default:
-      return on_sine(time, now).state;
+      return on_sine(time, [&] { return motion_.at(now).rest; }).state;
     }
   }
 
   // The next collision; nothing if there is none.
-  std::optional<Meeting> meeting() const {
+  std::optional<Meeting<T>> meeting() const {
     switch (motion_.shape()) {
     case Shape::sawtooth:
       return on_teeth();
@@ -76,23 +69,22 @@ template <Real T> class ShakenApproach {
 
  private:
   Approach<T> straight(const T& gap, const T& closing, const T& pull) const { return {gap, closing, pull, splitter_}; }
-  Pair<T> time_at(const T& wait) const { return since_ + wait; }
   static T whole_below(const T& x) { return nearest_whole(T(x - T(1) / T(2))); }
 
   // For long times: the wall may be anywhere on its path. The distance from its place, which the particle approaches at
   // the speed w - s'(0), does not lose digits.
-  State at_phase(const T& time, const T& y) const {
-    const Approach<T> to_place = straight(T(gap_ + (place_ - motion_.place(y))), T(closing_ - speed_), pull_);
-    return {to_place.gap_after(time), T(to_place.closing_after(time) + motion_.speed(y))};
+  State with_wall(const Displaced<T>& wall, const T& time) const {
+    const Approach<T> to_place = straight(T(gap_ + (place_ - wall.place)), T(closing_ - speed_), pull_);
+    return {to_place.gap_after(time), T(to_place.closing_after(time) + wall.speed)};
   }
 
   // How long the wall will not reach a particle at this distance from its place, with a sixteenth of a period to spare;
   // nothing if it never will.
   std::optional<T> out_of_reach(const T& distance, const T& closing) const {
     if (!(motion_.amplitude() < distance)) return T(0);
-    const auto wait = straight(T(distance - motion_.amplitude()), closing, pull_).meeting_in();
+    const auto wait = straight(T(distance - motion_.amplitude()), closing, pull_).meeting();
     if (!wait) return {};
-    const T surely = *wait - motion_.period() / T(16);
+    const T surely = wait->in - motion_.period() / T(16);
     return is_positive(surely) ? surely : T(0);
   }
   // A time without collisions after which there are none.
@@ -103,7 +95,7 @@ template <Real T> class ShakenApproach {
     return turns_back + T(17) * motion_.period() / T(16);
   }
 
-  std::optional<Meeting> on_teeth() const {
+  std::optional<Meeting<T>> on_teeth() const {
     const T height = motion_.amplitude() + motion_.amplitude(), never = last_chance();
     T teeth(0);
     if (const auto free = out_of_reach(T(gap_ + place_), T(closing_ - speed_)))
@@ -113,12 +105,12 @@ template <Real T> class ShakenApproach {
     for (;;) {
       const T jump = (T(1) / T(2) - phase_.rest + teeth) * motion_.period();
       const Approach<T> tooth = straight(T(gap_ + height * teeth), closing_, pull_);
-      const auto wait = tooth.meeting_in();
+      const auto wait = tooth.meeting();
       if (!wait) return {};
       T rounding = roundings(T(magnitude(since_.high) + jump));
       const bool resolved = rounding < motion_.period() / T(8);
       if (!resolved) rounding = T(0);
-      if (*wait < jump - rounding) return Meeting{*wait, tooth.meeting_speed().value_or(T(0))};
+      if (wait->in < jump - rounding) return wait;
       if (never < jump) return {};
       const Approach<T> to_place = straight(T(gap_ + place_), T(closing_ - speed_), pull_);
       const T distance = to_place.gap_after(jump);
@@ -132,7 +124,9 @@ template <Real T> class ShakenApproach {
     }
   }
   static T roundings(const T& time) { return T(16) * T(std::numeric_limits<T>::epsilon()) * time; }
-  static Meeting unresolved(const T& time, const T& closing) { return {time, is_positive(closing) ? closing : T(0)}; }
+  static Meeting<T> unresolved(const T& time, const T& closing) {
+    return {time, is_positive(closing) ? closing : T(0)};
+  }
 
   // An arc that begins `time` later, with so much of it left.
   struct Arc {
@@ -163,9 +157,9 @@ template <Real T> class ShakenApproach {
         const Approach<T> here = on(arc);
         return {here.gap_after(T(time - arc.time)), here.closing_after(T(time - arc.time))};
       }
-    return at_phase(time, motion_.at(now).rest);
+    return with_wall(motion_.moment(now).wall, time);
   }
-  std::optional<Meeting> on_arcs() const {
+  std::optional<Meeting<T>> on_arcs() const {
     const T never = last_chance(), half = motion_.period() / T(2);
     const auto speed_at_start = [&](bool upper) { return upper ? motion_.fastest() : T(-motion_.fastest()); };
     Arc arc = this_arc();
@@ -189,8 +183,8 @@ template <Real T> class ShakenApproach {
         continue;
       }
       const Approach<T> here = on(arc);
-      const auto wait = here.meeting_in();
-      if (wait && !(arc.left < *wait)) return Meeting{T(arc.time + *wait), here.meeting_speed().value_or(T(0))};
+      const auto wait = here.meeting();
+      if (wait && !(arc.left < wait->in)) return Meeting<T>{T(arc.time + wait->in), wait->speed};
       const T now = arc.time;
       arc = next(arc);
       if (never < arc.time) return {};
@@ -202,11 +196,12 @@ template <Real T> class ShakenApproach {
     State state;
     T place, speed;  // of the wall
   };
-  OnSine on_sine(const T& time, const Pair<T>& now) const {
+  // `phase` gives that after the time.
+  template <class GetPhase> OnSine on_sine(const T& time, const GetPhase& phase) const {
     const T turns = motion_.at_turns_of(time);
     if (T(1) / T(8) < magnitude(turns)) {
-      const T y = motion_.at(now).rest;
-      return {at_phase(time, y), motion_.place(y), motion_.speed(y)};
+      const Displaced<T> wall = motion_.at_phase(phase());
+      return {with_wall(wall, time), wall.place, wall.speed};
     }
     const T angle = motion_.frequency() * time;
     const UnitVector<T> rest = motion_.circle().beyond_linear(angle);
@@ -225,26 +220,35 @@ template <Real T> class ShakenApproach {
     const T speed = square_root(square);
     return is_positive(closing) ? T((gap + gap) / (closing + speed)) : T((speed - closing) / rate);
   }
-  std::optional<Meeting> on_sine() const {
+  std::optional<Meeting<T>> on_sine() const {
     const T never = last_chance(), square = motion_.frequency() * motion_.frequency();
     const T greatest = pull_ + motion_.curving(), changing = motion_.curving() * motion_.frequency();
-    for (T time = open_;;) {
-      const auto [state, place, speed] = on_sine(time, time_at(time));
+    const typename WallMotion<T>::Following phases(motion_, since_, turns_);
+    const auto at = [&](const T& time) { return on_sine(time, [&] { return phases.rest(time); }); };
+    OnSine now = open_ == T(0) ? OnSine{{gap_, closing_}, place_, speed_} : at(open_);
+    for (T time = open_;; now = at(time)) {
+      const auto [state, place, speed] = now;
       const auto& [gap, closing] = state;
       const T rate = pull_ - square * place;
       if (!is_positive(gap) && is_positive(closing)) {  // closed just before, or by rounding
         const T inside = closing * closing + (rate + rate) * gap;
         const T when = time + (gap + gap) / (closing + (is_positive(inside) ? T(square_root(inside)) : T(0)));
-        const T there = on_sine(when, time_at(when)).state.closing;
-        return Meeting{when, is_positive(there) ? there : closing};
+        const T there = at(when).state.closing;
+        return Meeting<T>{when, is_positive(there) ? there : closing};
       }
       const T open = is_positive(gap) ? gap : T(0);
       const auto surely = open_for(open, closing, greatest);
       if (!surely) return {};
-      const T four = T(4) * *surely, turning = magnitude(rate) / changing, within = four < turning ? turning : four;
-      const T less = rate + changing * within;
-      const T longer = less < greatest ? open_for(open, closing, less).value_or(within) : T(0);
-      T wait = *surely < longer ? (longer < within ? longer : within) : *surely;
+      // Within four times as long, or until the acceleration has changed its sign, if that is later.
+      const auto longer_within = [&](const T& within) {
+        const T less = rate + changing * within;
+        const T longer = less < greatest ? open_for(open, closing, less).value_or(within) : T(0);
+        return longer < within ? longer : within;
+      };
+      const T four = T(4) * *surely, turning = magnitude(rate) / changing;
+      T wait = longer_within(turning);  // mostly: both of the waits are then computed at once
+      if (turning < four) wait = longer_within(four);
+      if (wait < *surely) wait = *surely;
       const auto free = out_of_reach(T(gap + place), T(closing - speed));
       if (!free) return {};
       if (wait < *free) wait = *free;
@@ -260,7 +264,7 @@ template <Real T> class ShakenApproach {
 
   T gap_, closing_, pull_, splitter_;
   const WallMotion<T>& motion_;
-  Pair<T> since_;
+  Pair<T> since_, turns_;
   Phase<T> phase_;
   T place_, speed_;  // of the wall, at the time 0
   T open_;

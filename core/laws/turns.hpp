@@ -62,13 +62,16 @@ template <class T, class Inverses> UnitVector<T> series(const T& x, const Invers
 }
 
 template <class T, class Inverses> UnitVector<T> at_turns(const T& y, const T& full_turn, const Inverses& inverse) {
-  const T rest = y - nearest_whole(y), q = nearest_whole(T(T(4) * rest));
+  T rest = y;
+  if (!(magnitude(y) < T(1) / T(2))) [[unlikely]]
+    rest -= nearest_whole(y);
+  const T q = nearest_whole(T(T(4) * rest));
   const T z = (rest - q / T(4)) * full_turn, x = -z * z;
   const UnitVector<T> of = series(x, inverse);
   const T c = of.cos * x + T(1), s = (of.sin * x + T(1)) * z;
-  const bool across = q == T(1) || q == T(-1);
-  const T &along_cos = across ? s : c, &along_sin = across ? c : s;
-  return {q == T(0) || q == T(-1) ? along_cos : T(-along_cos), q == T(0) || q == T(1) ? along_sin : T(-along_sin)};
+  const bool across = magnitude(q) == T(1), to_right = q == T(0) || q == T(-1), up = q == T(0) || q == T(1);
+  const T along_cos = across ? s : c, along_sin = across ? c : s;
+  return {to_right ? along_cos : T(-along_cos), up ? along_sin : T(-along_sin)};
 }
 
 }  // namespace detail

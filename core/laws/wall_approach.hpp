@@ -20,23 +20,31 @@ template <Real T> struct HoldingWall {
 
   // The pull that a particle of this pull has on it at a time since the start, and whether the wall presses it then.
   T pressure(const T& pull, const Pair<T>& elapsed) const {
-    return motion != nullptr ? T(pull + motion->acceleration(motion->at(elapsed).rest)) : pull;
+    return motion != nullptr ? T(pull + at(elapsed).wall.acceleration) : pull;
   }
   bool presses(const T& pull, const Pair<T>& elapsed) const { return is_positive(pressure(pull, elapsed)); }
+  // A shaken wall at a time since the start. The last answer is kept, since a collision asks several times.
+  const WallMoment<T>& at(const Pair<T>& elapsed) const {
+    if (!last || !(last->elapsed.high == elapsed.high && last->elapsed.low == elapsed.low))
+      last = motion->moment(elapsed);
+    return *last;
+  }
+  mutable std::optional<WallMoment<T>> last = {};
 };
 
 template <Real T> class WallApproach {
  public:
-  // Arguments as for Approach (approach.hpp); `since` is the time since the start at which the gap has this size.
+  // Arguments as for Approach (approach.hpp); `since` is the time since the start at which the gap has this size. A
+  // particle may be one that does not rest although the wall holds particles.
   WallApproach(const T& gap, const T& closing, const T& pull, const T& splitter, const HoldingWall<T>& wall,
-               const Pair<T>& since)
+               const Pair<T>& since, bool may_rest = true)
       : straight_(gap, closing, pull, splitter), motion_(wall.motion),
-        rests_(wall.holds && gap == T(0) && closing == T(0) && wall.presses(pull, since)) {
+        rests_(may_rest && wall.holds && gap == T(0) && closing == T(0) && wall.presses(pull, since)) {
     if (motion_ == nullptr) return;
     if (!rests_)
-      shaken_.emplace(gap, closing, pull, splitter, *motion_, since);
+      shaken_.emplace(gap, closing, pull, splitter, *motion_, wall.at(since));
     else if (wall.release)
-      let_go(*wall.release, pull, splitter, since);
+      let_go(*wall.release, pull, splitter, wall.at(since));
   }
 
   // The gap above particles that a wall holds. Until they are let go, the time `held` after `since` (nothing: never),
@@ -45,7 +53,7 @@ template <Real T> class WallApproach {
                const Pair<T>& since, const std::optional<T>& held, const T& later)
       : straight_(gap, closing, pull, splitter), motion_(motion), rests_(false) {
     if (motion != nullptr && !(held && motion->shape() == Shape::sawtooth))  // it does not jump while it holds them
-      shaken_.emplace(gap, closing, pull, splitter, *motion, since);
+      shaken_.emplace(gap, closing, pull, splitter, *motion, motion->moment(since));
     if (!held) return;
     const T until = is_negative(*held) ? T(0) : *held;
     const Pair<T> then = since + until;
@@ -71,20 +79,14 @@ template <Real T> class WallApproach {
   T acceleration_after(const T& time, const Pair<T>& now) const {
     if (freed_ && freed_->at < time) return freed_->approach.pull();
     if (rests(time, now)) return T(0);
-    return motion_ != nullptr ? T(straight_.pull() + motion_->acceleration(motion_->at(now).rest)) : straight_.pull();
+    return motion_ != nullptr ? T(straight_.pull() + motion_->moment(now).wall.acceleration) : straight_.pull();
   }
   // The next collision, as in approach.hpp.
-  std::optional<T> meeting_in() const {
-    std::optional<T> in = held_meeting_in();
-    if (!freed_before(in)) return in;
-    in = freed_->approach.meeting_in();
-    return in ? std::optional<T>(freed_->at + *in) : std::nullopt;
-  }
-  std::optional<T> meeting_speed() const {
-    if (freed_ && freed_before(held_meeting_in())) return freed_->approach.meeting_speed();
-    if (!shaken_) return rests_ ? std::nullopt : straight_.meeting_speed();
-    const auto meeting = shaken_->meeting();
-    return meeting ? std::optional<T>(meeting->speed) : std::nullopt;
+  std::optional<Meeting<T>> meeting() const {
+    const std::optional<Meeting<T>> held = held_meeting();
+    if (!freed_ || (held && !(freed_->at < held->in))) return held;
+    const auto free = freed_->approach.meeting();
+    return free ? std::optional<Meeting<T>>({T(freed_->at + free->in), free->speed}) : std::nullopt;
   }
   // How long the particle has rested after a time.
   T rested(const T& time, const Pair<T>& now) const { return !rests_ ? T(0) : rests(time, now) ? time : released_; }
@@ -95,30 +97,29 @@ template <Real T> class WallApproach {
   }
 
  private:
-  std::optional<T> held_meeting_in() const {
-    if (!shaken_) return rests_ ? std::nullopt : straight_.meeting_in();
+  std::optional<Meeting<T>> held_meeting() const {
+    if (!shaken_) return rests_ ? std::nullopt : straight_.meeting();
     const auto meeting = shaken_->meeting();
-    return meeting ? std::optional<T>(released_ + meeting->in) : std::nullopt;
+    return meeting ? std::optional<Meeting<T>>({T(released_ + meeting->in), meeting->speed}) : std::nullopt;
   }
-  bool freed_before(const std::optional<T>& meeting) const { return freed_ && (!meeting || freed_->at < *meeting); }
 
   bool rests(const T& time, const Pair<T>& now) const {
     if (!rests_ || !shaken_) return rests_;
     return motion_->shape() == Shape::sawtooth ? motion_->at(now).whole < tooth_ : !(released_ < time);
   }
   // Rests until the phase `at`. The sine does not press it again before the phase 1/2 - at.
-  void let_go(const T& at, const T& pull, const T& splitter, const Pair<T>& since) {
-    const Phase<T> phase = motion_->at(since);
+  void let_go(const T& at, const T& pull, const T& splitter, const WallMoment<T>& now) {
+    const Phase<T>& phase = now.phase;
     T turns = at - phase.rest;
     if (is_negative(turns)) turns = phase.rest < T(1) / T(2) - at ? T(0) : T(turns + T(1));
     released_ = turns * motion_->period();
-    const Pair<T> then = since + released_;
     tooth_ = phase.whole + T(1);
     const bool jumps = motion_->shape() == Shape::sawtooth;
     const Phase<T> free{jumps ? tooth_ : phase.whole, jumps ? T(T(-1) / T(2)) : at};
     const T open = motion_->shape() == Shape::sine ? T((T(1) / T(2) - (at + at)) * motion_->period()) : T(0);
-    shaken_.emplace(jumps ? T(motion_->amplitude() + motion_->amplitude()) : T(0), T(0), pull, splitter, *motion_, then,
-                    free, open);
+    const Pair<T> then = now.elapsed + released_;
+    shaken_.emplace(jumps ? T(motion_->amplitude() + motion_->amplitude()) : T(0), T(0), pull, splitter, *motion_,
+                    WallMoment<T>{then, motion_->turns_at(then), free, motion_->at_phase(free.rest)}, open);
   }
 
   Approach<T> straight_;

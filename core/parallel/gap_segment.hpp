@@ -28,22 +28,30 @@ template <Real T, class Masses> class GapSegment {
     FrontMove<T> to_left, to_right;  // at the ends of a line
   };
 
-  explicit GapSegment(const Chain& chain) : line_(chain.line(), 0) {}
+  explicit GapSegment(const Chain& chain) : line_(chain.line(), 0), wall_gaps_(chain.wall_gaps()) {}
 
   // ---- slots of the copy: ghosts and what is owned; beside them stands a gap that never closes
   static constexpr Slot first() { return first_; }
   Slot last() const { return last_; }
   Slot left(Slot s) const { return s - 1; }
   Slot right(Slot s) const { return s + 1; }
-  T due(Slot s) const { return line_.due(s); }
-  double queue_key(Slot s) { return line_.gaps.queue_key(s, line_.closing(s)); }
+  T due(Slot s) const {
+    if constexpr (!Gaps::keys_are_exact)
+      if (wall_gaps_.pulls(line_.particle(s))) return wall_gaps_.due(line_, s).value_or(far_away<T>());
+    return line_.due(s);
+  }
+  double queue_key(Slot s) {
+    if constexpr (!Gaps::keys_are_exact)
+      if (wall_gaps_.pulls(line_.particle(s))) return wall_gaps_.queue_due(line_, s);
+    return line_.gaps.queue_key(s, line_.closing(s));
+  }
   double queue_time(const T& local) const { return line_.gaps.queue_time(local); }
   bool across_seam() const { return across_seam_; }
   bool is_ring() const { return is_ring_; }  // a whole one, without cuts
   void lose(Slot s, const T& energy) { line_.gaps.lose(s, energy); }
   // The collision at a gap of the segment's own, before it is made.
   Observed observed(Slot s, const T& time) const {
-    return {time, line_.closing(s),
+    return {time, closing_when_due(s),
             ring_ > 0 ? static_cast<ParticleIndex>(in_chain(s)) - ring_first_ : line_.particle(s)};
   }
   // The particles on its left and right.
@@ -73,6 +81,7 @@ template <Real T, class Masses> class GapSegment {
     across_seam_ = in_chain(first_) + (last_ - first_) != in_chain(last_);
     gaps_ = chain.particles().gaps();
     walls_ = chain.walls();
+    wall_gaps_ = chain.wall_gaps();
 
     line_.resemble(chain.line(), last_ + 3, offset_);
     const Slot from = left_end_ ? own_first_ : first_, to = right_end_ ? own_last_ : last_;
@@ -94,8 +103,9 @@ template <Real T, class Masses> class GapSegment {
     Outcome<T> outcome = law(line_.closing(s), line_.masses.of_pair(s));
     Edge edge;
     if (!(s - inner_first_ < inner_)) [[unlikely]] {
-      if (walls_.beside(line_.particle(s))) outcome = at_wall(s, line_.closing(s));
-      edge = at_edge(s, time, line_.closing(s), outcome, report);
+      if (walls_.beside(line_.particle(s))) outcome = at_wall(law, s, time);
+      edge = at_edge(s, time, outcome, report);
+      if (wall_gaps_.anywhere()) return {strike_at_edge(s - 1, s, s + 1, time, outcome, edge.notice), edge.own};
     }
     return {line_.strike(s - 1, s, s + 1, time, outcome, edge.notice), edge.own};
   }
@@ -147,12 +157,27 @@ template <Real T, class Masses> class GapSegment {
     }
   }
 
-  [[gnu::noinline]] Outcome<T> at_wall(Slot s, const T& closing) {
+  T closing_when_due(Slot s) const {
+    const auto meeting = wall_gaps_.pulls(line_.particle(s)) ? wall_gaps_.meeting(line_, s) : std::nullopt;
+    return meeting ? meeting->speed : line_.closing(s);
+  }
+  template <class Law> [[gnu::noinline]] Outcome<T> at_wall(const Law& law, Slot s, const T& time) {
     const ParticleIndex gap = line_.particle(s);
-    return walls_.strike(gap, closing, line_.masses[walls_.left_of(gap) ? s + 1 : s]);
+    const T& mass = line_.masses[walls_.left_of(gap) ? s + 1 : s];
+    if (!wall_gaps_.anywhere()) return walls_.strike(gap, line_.closing(s), mass);
+    const Pair<T> elapsed = line_.gaps.clock().since_start(time);
+    return with_law(law, [&](const auto& own) {
+      return wall_gaps_.strike_wall(walls_, gap, own, closing_when_due(s), mass, elapsed);
+    });
+  }
+  // Where anything falls or is shaken, collisions at walls and beside gaps to them are others.
+  CollisionResult<T> strike_at_edge(Slot p, Slot s, Slot n, const T& time, const Outcome<T>& outcome, Notice notice) {
+    if (!wall_gaps_.anywhere()) return line_.strike(p, s, n, time, outcome, notice);
+    return wall_gaps_.strike(line_, p, s, n, time, outcome, notice, 0, [] { return Notice::none; });
   }
   // A collision that may be at a cut or a front, or beyond.
-  [[gnu::noinline]] Edge at_edge(Slot s, const T& time, const T& closing, const Outcome<T>& outcome, Report& report) {
+  [[gnu::noinline]] Edge at_edge(Slot s, const T& time, const Outcome<T>& outcome, Report& report) {
+    const T closing = closing_when_due(s);
     Notice notice = Notice::none;
     if (is_ring_) return {};
     if (!left_end_ && s + 1 - own_first_ < 2) report.left.push_back({s == own_first_, time, closing});
@@ -181,14 +206,18 @@ template <Real T, class Masses> class GapSegment {
   void set_inner() {
     constexpr std::size_t reach = 8;  // of a decision in steps, over the seam
     if (is_ring_) return void((inner_first_ = first_ + reach, inner_ = last_ + 1 - first_ - 2 * reach));
-    inner_first_ = reached_left_ + 1;
-    inner_ = reached_right_ > inner_first_ ? reached_right_ - inner_first_ : 0;
+    // Beside a gap that is not straight collisions are no inner ones either.
+    const bool curved = wall_gaps_.anywhere();
+    inner_first_ = reached_left_ + 1 + (curved && left_end_);
+    const Slot end = reached_right_ - (curved && right_end_);
+    inner_ = end > inner_first_ ? end - inner_first_ : 0;
   }
 
   // ---- for steps (steps/stepped.hpp)
   template <class Law, class Part> friend struct Stepped;
-  template <class Law> Outcome<T> outcome_at_edge(const Law& law, Slot s, const T& closing) {
-    return walls_.beside(line_.particle(s)) ? at_wall(s, closing) : law(closing, line_.masses.of_pair(s));
+  bool curved() const { return wall_gaps_.anywhere(); }
+  template <class Law> Outcome<T> outcome_at_edge(const Law& law, Slot s, const T& time) {
+    return walls_.beside(line_.particle(s)) ? at_wall(law, s, time) : law(line_.closing(s), line_.masses.of_pair(s));
   }
   // What collisions at edges change.
   struct Edges {
@@ -211,6 +240,7 @@ template <Real T, class Masses> class GapSegment {
   Slot inner_first_ = 0, inner_ = 0;           // between them
   GapRange gaps_{0, 0};                        // all that there are on the line
   Walls<T> walls_;
+  WallGaps<GapLine<T, Masses>> wall_gaps_;  // no particles rest there
 };
 
 template <Real T, class Masses> struct PartOf<GapChain<T, Masses>> { using Type = GapSegment<T, Masses>; };

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "cradle/core/ensemble/executor.hpp"
+#include "cradle/core/initial/walled.hpp"
 #include "cradle/core/parallel/segments.hpp"
 #include "cradle/core/parallel/steps/steps.hpp"
 #include "cradle/tests/core/compare.hpp"
@@ -51,6 +52,24 @@ struct SlabsMade {
 template <class T> Scene<T> gas(ParticleIndex n, const T& circumference = T(0), bool unequal = false) {
   const auto mass = [=](ParticleIndex b) { return unequal ? T(T(1) + T(bits_of(b, 40, 7)) / T(2)) : T(1); };
   return as_list(*rmix<T>(n), mass, circumference);
+}
+
+// Lines at whose ends gaps are curves in time: a column on a floor that is at rest, on one that saws and on one that
+// moves like a sine under a hot ceiling; and a gas between shaken walls.
+template <class T> std::vector<Scene<T>> lines_at_curved_walls(ParticleIndex n, bool unequal = false) {
+  const auto shaken = [](const Wall<T>& at, Shape shape, int amplitude, int frequency) {
+    Wall<T> wall = at;
+    wall.motion = std::make_shared<WallMotion<T>>(shape, T(amplitude) / T(16), T(frequency), T(1));
+    return wall;
+  };
+  const Wall<T> left{.position = T(-1)}, right{.position = T(n + 1)};
+  const Wall<T> hot{.position = right.position, .temperature = 0.3, .seed = 5, .replica = 2};
+  const T falls = T(-2) / T(n);
+  const Scene<T> line = gas<T>(n, T(0), unequal);
+  return {std::make_shared<Walled<T>>(line, left, std::nullopt, falls),
+          std::make_shared<Walled<T>>(line, shaken(left, Shape::sawtooth, 1, 40), std::nullopt, falls),
+          std::make_shared<Walled<T>>(line, shaken(left, Shape::sine, 8, 1), hot, falls),
+          std::make_shared<Walled<T>>(line, shaken(left, Shape::sine, 4, 2), shaken(right, Shape::parabola, 8, 1))};
 }
 
 // Elastic particles, nearly elastic ones, some with a cut-off, soft ones.

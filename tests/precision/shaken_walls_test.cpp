@@ -53,6 +53,24 @@ TYPED_TEST(ShakenIn, WholeNumbersOfAnySizeAreExact) {
     }
 }
 
+// The phases that follow a time are those of the later times, to the bit, after few and after very many turns.
+TYPED_TEST(ShakenIn, PhasesThatFollowATimeAreThoseOfLaterTimes) {
+  using T = typename TestFixture::Scalar;
+  constexpr bool quick = std::same_as<T, double>;
+  std::uint64_t state = 11;
+  const auto draw = [&] { return static_cast<double>((state = splitmix64(state)) >> 11) * 0x1p-53; };
+  for (int k = 0; k < (quick ? 3000 : 30); ++k) {
+    const WallMotion<T> motion(Shape::sine, T(1), exactly<T>(std::exp2(8 * draw() - 4)), exactly<T>(8 * draw() - 4));
+    const T time = exactly<T>(std::exp2((k % 10 == 0 ? 90 : 44) * draw() - 4)) / T(3);
+    const Pair<T> since = two_sum(time, T(T(std::numeric_limits<T>::epsilon()) * time * exactly<T>(draw()) / T(4)));
+    const typename WallMotion<T>::Following phases(motion, since, motion.turns_at(since));
+    for (int j = 0; j < 100; ++j) {
+      const T wait = exactly<T>(std::exp2(60 * draw() - 55)) / T(7);
+      ASSERT_EQ(phases.rest(wait), motion.at(since + wait).rest) << k << ' ' << j;
+    }
+  }
+}
+
 template <class P> class ShakenColumnIn : public InPrecision<P> {};
 TYPED_TEST_SUITE(ShakenColumnIn, EachKindOfPrecision, PrecisionName);
 
@@ -69,12 +87,10 @@ TYPED_TEST(ShakenColumnIn, TheSearchForACollisionEnds) {
       T u(1);
       for (int k = 0; k < 25; ++k, u *= root)
         for (const T& since : {T(0), T(T(1) / u)}) {
-          const Phase<T> now = motion.at({since, T(0)});
-          const T distance = T(11) / T(3), gap = distance - motion.place(now.rest);
+          const WallMoment<T> now = motion.moment({since, T(0)});
+          const T distance = T(11) / T(3), gap = distance - now.wall.place;
           const auto meeting = [&](const T& closing, const T& pull) {
-            return ShakenApproach<T>(gap, T(motion.speed(now.rest) + closing), pull, splitter<T>(), motion,
-                                     {since, T(0)})
-                .meeting();
+            return ShakenApproach<T>(gap, T(now.wall.speed + closing), pull, splitter<T>(), motion, now).meeting();
           };
           const auto met = meeting(u, T(0));
           if (u > T(1 << 20) * epsilon && since * epsilon < u) {
@@ -243,7 +259,7 @@ template <class T> void expect_never_late(int count) {
     }
     const WallMotion<T> motion(c.shape, exactly<T>(c.amplitude), exactly<T>(c.frequency), exactly<T>(c.phase));
     const ShakenApproach<T> approach(gap, exactly<T>(c.closing), exactly<T>(c.pull), splitter<T>(), motion,
-                                     Pair<T>{exactly<T>(c.since), T(0)});
+                                     motion.moment({exactly<T>(c.since), T(0)}));
     const auto meeting = approach.meeting();
     const Reference end = meeting ? exact(meeting->in) : Reference(40 * period);
     const Reference sizes = wide.gap + c.amplitude + (abs(wide.closing) + speed) * end + abs(wide.pull) * end * end / 2;

@@ -32,7 +32,7 @@ requires(StepNumbers<T>::template by_law<Law> && !Watched<Masses>) struct Steppe
 
   // Makes all collisions up to the local time `stop`, fewer than `most`, on what the part has taken.
   bool run(const Steps& steps, Part& part, const Law& law, const T& stop, std::uint64_t most, Report& report) {
-    if (Numbers::pairs && report.observe) return false;  // the event loop logs what is observed
+    if (Numbers::pairs && (report.observe || part.curved())) return false;  // the event loop logs and knows curves
     if (report.pace.rest > 0) return --report.pace.rest, false;
     part_ = &part, law_ = &law, report_ = &report;
     const StepTask task = task_of(stop, most);
@@ -142,12 +142,12 @@ requires(StepNumbers<T>::template by_law<Law> && !Watched<Masses>) struct Steppe
       Numbers::give(line_, each - Part::first(), cells, each);
       if (!(cells.gaps[each].time < time)) return false;
     }
-    const Outcome<T> outcome = part_->outcome_at_edge(*law_, s, cells.closing(s));
-    const auto edge = part_->at_edge(s, time, cells.closing(s), outcome, *report_);
+    const Outcome<T> outcome = part_->outcome_at_edge(*law_, s, time);
+    const auto edge = part_->at_edge(s, time, outcome, *report_);
     set_inner();
     if (edge.notice != Notice::none) return false;
     if (edge.own) log(s, time, outcome.below_cutoff);
-    const Notice notice = cells.strike(left, s, right, time, outcome, Notice::none).notice;
+    const Notice notice = part_->strike_at_edge(left, s, right, time, outcome, Notice::none).notice;
     if (includes(notice, Notice::origin_must_move) || includes(notice, Notice::gap_below_floor)) return false;
     if (edge.own || !Ledger<T>::in_any_order) part_->lose(s, outcome.energy_lost);
     for (std::size_t k = 0; k < 3; ++k) {

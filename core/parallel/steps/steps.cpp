@@ -232,10 +232,9 @@ int step(StepLine& line, const StepTask& task, StepScalars& scalars, double end,
       const bool left_later = l.due[left] > end, right_later = l.due[right] > end;
       if (!scalars.collide(i)) return -1;
       follow(l, left, left_later & (l.due[left] <= end), right, right_later & (l.due[right] <= end));
-      if constexpr (Collisions::linked) {  // the gap behind a particle that has merged is in this place now
-        l.waiting[l.later] = static_cast<std::uint32_t>(i);
-        l.later += l.due[i] <= end;
-      }
+      // A particle may fall back on a wall; the gap behind a particle that has merged is in this place now.
+      l.waiting[l.later] = static_cast<std::uint32_t>(i);
+      l.later += l.due[i] <= end;
     }
     result.collisions += l.firsts + l.by_links;
     if (line.may_leave && end < task.stop && leave(line, l, end, result.collisions - before)) break;

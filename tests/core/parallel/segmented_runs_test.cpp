@@ -66,7 +66,8 @@ TEST(Segments, PollTheCallerAndContinueAfterAnythingThatIsThrown) {
   EXPECT_GT(segments.statistics().slabs, 20U);
 }
 
-// Small zones, collapses to be found and short ways are not for segments, however many threads there are.
+// Small zones, collapses to be found, walls on which particles may rest and short ways are not for segments, however
+// many threads there are.
 TEST(Segments, DoNotStartWhereTheyWouldNotPay) {
   GapSegments segments(threads(2));
   auto few = gap_run(rshock<double>(400), law);
@@ -74,6 +75,11 @@ TEST(Segments, DoNotStartWhereTheyWouldNotPay) {
   auto stops = gap_run<double>(rshock<double>(4000), law, {CollapsePolicy::stop});
   stops.advance(1200, segments);
   EXPECT_GT(stops.collided_particles(), 1000);
+  const Wall<double> holds{.position = -2001, .restitution = 0.5, .rest_speed = 0.01};
+  auto rests =
+      gap_run<double>(std::make_shared<Walled<double>>(rshock<double>(4000), holds, std::nullopt, -0.001), law);
+  rests.advance(1200, segments);
+  EXPECT_GT(rests.collided_particles(), 1000);
   EXPECT_EQ(segments.statistics().slabs + segments.statistics().given_up, 0U);
   auto many = gap_run(rshock<double>(4000), law);
   many.advance(1200, segments);

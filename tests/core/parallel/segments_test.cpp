@@ -1,6 +1,7 @@
 // One run in segments. Proves: for all cuts, ghosts, time slabs and threads, a run has the bits of the plain loop at
 // every time at which it stops, and an observer receives the same collisions in the same order; with laws, masses,
-// lines, rows and rings, simultaneous collisions, collapsed cores and time slabs that fail at every cut.
+// lines, rows and rings, gravity and shaken walls, simultaneous collisions, collapsed cores and time slabs that fail at
+// every cut.
 #include <gtest/gtest.h>
 
 #include "cradle/tests/core/segmented.hpp"
@@ -64,6 +65,16 @@ TYPED_TEST(Cells, UnequalParticlesThatMergeOnALine) { expect_same_merging(this->
 TYPED_TEST(Cells, RowsThatMergeAsTheyAreStreamed) {
   using T = TypeParam;
   expect_same_clusters(rshock<T>(1400), {500, 520, 560, 700}, 10'000, Wet<T>(T(1) / T(5000)), Wet<T>(T(1) / T(50000)));
+}
+// Cuts beside walls and far from them, and walls among the ghosts.
+TYPED_TEST(Cells, ColumnsAndShakenWalls) {
+  for (const Scene<TypeParam>& scene : lines_at_curved_walls<TypeParam>(600)) {
+    SCOPED_TRACE("acceleration " + std::to_string(to_double(scene->acceleration())));
+    expect_same<IdenticalMasses>(scene, {90, 170});
+  }
+}
+TYPED_TEST(Cells, UnequalMassesInColumns) {
+  expect_same<IndividualMasses>(lines_at_curved_walls<TypeParam>(600, true).front(), {170});
 }
 // Collisions are simultaneous all over the line; the time slabs that hold such are for the plain loop, or for exact
 // times.

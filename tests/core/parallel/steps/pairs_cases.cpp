@@ -40,6 +40,7 @@ TEST_F(StepsOfPairs, Walls) {
   expect_same_between_walls<Equal>({8, 40}, 0.25);
   expect_same_between_walls<Unequal>({40}, 0.25);
 }
+TEST_F(StepsOfPairs, LeaveColumnsAndShakenWallsToTheEventLoop) { expect_same_at_curved_walls<Equal>({120}, 0); }
 
 TEST_F(StepsOfPairs, MakeNearlyAllCollisionsOfAGas) {
   const SlabsMade made =

@@ -76,6 +76,13 @@ template <class Chain> void expect_same_between_walls(const std::vector<int>& ti
   expect_same_by_all_laws<Chain>(scene, times, least_in_steps);
 }
 
+// Under gravity and between shaken walls.
+template <class Chain> void expect_same_at_curved_walls(const std::vector<int>& times, double least_in_steps) {
+  using T = typename Chain::Scalar;
+  for (const Scene<T>& scene : lines_at_curved_walls<T>(600, !std::same_as<Chain, GapChain<T>>))
+    expect_same_by_all_laws<Chain>(scene, times, least_in_steps);
+}
+
 // ---- random scenes
 
 class Dice {
@@ -110,10 +117,18 @@ template <class T> Scene<T> random_scene(Dice& dice, bool unequal, double& durat
   if (!with_walls || ring || dice.below(3) > 0) return scene;
   const auto wall = [&](double at) -> std::optional<Wall<T>> {
     if (dice.below(3) == 0) return {};
-    return Wall<T>{
-        .position = T(at), .restitution = T(dice.uniform()), .temperature = dice.one_of({0., 0.3}), .seed = 3};
+    Wall<T> made{.position = T(at), .restitution = T(dice.uniform()), .temperature = dice.one_of({0., 0.3}), .seed = 3};
+    if (dice.below(3) > 0) return made;
+    // Restitution 1, since particles without a cut-off would collapse on it.
+    made.restitution = T(1);
+    made.motion = std::make_shared<WallMotion<T>>(dice.one_of({Shape::sawtooth, Shape::parabola, Shape::sine}),
+                                                  T(dice.one_of({0.01, 0.2})), T(dice.one_of({0.5, 3., 40.})), T(0));
+    return made;
   };
-  return std::make_shared<Walled<T>>(scene, wall(-0.5), wall(last + 0.5));
+  auto left = wall(-0.5), right = wall(last + 0.5);
+  const T falls = dice.below(3) > 0 || !left ? T(0) : T(-2. / last);
+  if (!(falls == T(0))) left->restitution = T(1);
+  return std::make_shared<Walled<T>>(scene, left, right, falls);
 }
 
 inline std::vector<SegmentsAs> random_ways(Dice& dice) {

@@ -40,10 +40,11 @@ template <class T> std::shared_ptr<const cradle::Rows<T>> rows(ParticleIndex n) 
 
 // Random velocities; masses are 1 and `other_mass` in turn; on a ring if it has a circumference.
 template <class T = double>
-std::shared_ptr<const cradle::Particles<T>> gas(ParticleIndex n, double other_mass = 1, const T& circumference = T(0)) {
+std::shared_ptr<const cradle::Particles<T>> gas(ParticleIndex n, double other_mass = 1, const T& circumference = T(0),
+                                                std::uint64_t seed = 0) {
   std::vector<T> x, v, m;
   for (std::uint64_t i = 0; i < static_cast<std::uint64_t>(n); ++i) {
-    const std::uint64_t bits = hash(i);
+    const std::uint64_t bits = hash(i + (seed << 32));
     x.push_back(T(static_cast<double>(i) + static_cast<double>(bits & 0xFFFFFFF) * 0x1p-29));
     v.push_back(T(static_cast<double>(bits >> 28) * 0x1p-35 - 1));
     if (other_mass != 1) m.push_back(T(i % 2 == 0 ? 1 : other_mass));

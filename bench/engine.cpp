@@ -7,7 +7,8 @@
 // shock   two rows of N particles together, eps = 0.999, delta = 1e-5, as in the paper's Fig. 2; `collisions/s` over
 //         the whole run, `late/s` over its end (6000 to 6500 for N = 8000), when the dense cluster forms. The far
 //         particles of long rows are not met yet: Cradle streams them.
-// gas     N particles of random velocities, all of them active from the start, eps = 0.999.
+// gas     N particles of random velocities, all of them active from the start, eps = 0.999; up to 300 particles every
+//         run is another one, since the processor learns the jumps of a run that is repeated.
 //
 // Times are processor time of the thread (time by the clock for the run on two threads), so that other work on the
 // machine disturbs them less. All engines must count the same collisions; otherwise the program prints an error and
@@ -15,6 +16,7 @@
 // the measured code.
 
 #include <concepts>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -52,9 +54,9 @@ template <class Chain> class Cradle {
 using Gaps = Cradle<cradle::GapChain<double>>;
 using Positions = Cradle<cradle::PositionChain<double>>;
 
-// A run in segments (core/parallel/segments.hpp) on so many threads, or cut into so many pieces. The pieces show how
-// evenly as many processors would share the work: `parallel` is the number of collisions of all pieces divided by that
-// of the busiest one, in each time slab.
+// A run in segments and steps (core/parallel/), as programs have it, on so many threads, or cut into so many pieces.
+// The pieces show how evenly as many processors would share the work: `parallel` is the number of collisions of all
+// pieces divided by that of the busiest one, in each time slab.
 template <unsigned threads, unsigned pieces = 0> class InSegments : public Gaps {
  public:
   InSegments(const ParticlesPointer& particles)
@@ -64,7 +66,7 @@ template <unsigned threads, unsigned pieces = 0> class InSegments : public Gaps 
 
  private:
   static cradle::Segmentation segmentation(const cradle::Particles<double>& particles) {
-    cradle::Segmentation how;
+    cradle::Segmentation how{.steps = cradle::fastest_steps()};
     if (pieces > 0) how.gaps = static_cast<std::size_t>(particles.count()) / pieces;
     return how;
   }
@@ -75,6 +77,7 @@ template <unsigned threads, unsigned pieces = 0> class InSegments : public Gaps 
 template <class Engine> struct Twin : Engine {
   Twin(const ParticlesPointer& particles) : Engine(*particles, law) {}
 };
+using Scan = Twin<twins::ScanEngine>;
 using IndexedHeap = Twin<twins::IndexedHeapEngine>;
 using TunedHeap = Twin<twins::TunedHeapEngine>;
 using PriorityQueue = Twin<twins::PriorityQueueEngine>;
@@ -91,8 +94,9 @@ struct Check {
 
 struct Case {
   std::string name;
-  ParticlesPointer particles;
+  std::function<ParticlesPointer(std::uint64_t run)> particles;
   std::vector<Check> checks;  // a run ends with the last
+  bool small = false;
 };
 
 template <class Engine>
@@ -100,9 +104,11 @@ constexpr clockid_t clock_of = std::same_as<Engine, InSegments<2>> ? CLOCK_MONOT
 
 template <class Engine> void measure(benchmark::State& state, const Case& c, const std::string& engine_name) {
   double late_seconds = 0;
-  std::uint64_t collisions = 0, late_collisions = 0;
+  std::uint64_t collisions = 0, late_collisions = 0, runs = 0;
   for (auto iteration : state) {
-    Engine engine(c.particles);
+    const ParticlesPointer particles = c.particles(runs);
+    const std::string run = c.name + "/" + std::to_string(runs++);
+    Engine engine(particles);
     double seconds = 0;
     std::uint64_t before = 0;
     double last = 0;
@@ -112,7 +118,7 @@ template <class Engine> void measure(benchmark::State& state, const Case& c, con
       engine.advance(at.time);
       last = seconds_now(clock_of<Engine>) - start;
       seconds += last;
-      check(c.name, engine_name, at.time, engine.collisions(), at.collisions);
+      check(run, engine_name, at.time, engine.collisions(), at.collisions);
     }
     collisions += engine.collisions();
     if constexpr (requires { engine.statistics(); }) {
@@ -151,6 +157,7 @@ void enter_all(const Case& c) {
   enter<TunedHeap>("tuned_heap", shared);
   enter<IndexedHeap>("indexed_heap", shared);
   enter<PriorityQueue>("priority_queue", shared);
+  if (c.small) enter<Scan>("scan", shared);
 }
 
 }  // namespace
@@ -160,14 +167,18 @@ int main(int argc, char** argv) {
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   // Counts up to 6000 are those of an independent program, the same in double, binary128 and 100 digits. Soon after
   // 6500, positions in double no longer resolve the cluster, and counts begin to differ.
+  const auto always = [](const ParticlesPointer& particles) { return [=](std::uint64_t) { return particles; }; };
   enter_all({"shock/8000",
-             rows<double>(8000),
+             always(rows<double>(8000)),
              {{999.5, 384155}, {1999, 1299216}, {4000, 4685816}, {6000, 16156905}, {6500, 0}}});
   for (const ParticleIndex n : {100'000, 1'000'000})
-    enter_all({"shock/" + std::to_string(n), rows<double>(n), {{2000, 0}, {4000, 0}}});
-  const std::pair<ParticleIndex, double> gases[] = {{100, 300},    {1000, 300},     {8000, 300},
-                                                    {100'000, 40}, {1'000'000, 40}, {10'000'000, 20}};
-  for (const auto& [n, until] : gases) enter_all({"gas/" + std::to_string(n), gas(n), {{until / 2, 0}, {until, 0}}});
+    enter_all({"shock/" + std::to_string(n), always(rows<double>(n)), {{2000, 0}, {4000, 0}}});
+  for (const ParticleIndex n : {10, 30, 100, 300})
+    enter_all({"gas/" + std::to_string(n), [=](std::uint64_t run) { return gas(n, 1, 0., run); }, {{300, 0}}, true});
+  const std::pair<ParticleIndex, double> gases[] = {
+      {1000, 300}, {8000, 300}, {100'000, 40}, {1'000'000, 40}, {10'000'000, 20}};
+  for (const auto& [n, until] : gases)
+    enter_all({"gas/" + std::to_string(n), always(gas(n)), {{until / 2, 0}, {until, 0}}});
   benchmark::RunSpecifiedBenchmarks();
   benchmark::Shutdown();
 }

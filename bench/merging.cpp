@@ -99,7 +99,7 @@ int main(int argc, char** argv) {
     enter("wet/fig11", engine, rows<double>(20'000'000), 0.05, 1.9e7, 57079264);
   enter("wet/fig11_begin", plain, rows<double>(110'000), 0.05, 1e5);
   enter("wet/fig11_begin", conventional, rows<double>(110'000), 0.05, 1e5);
-  for (const cradle::ParticleIndex n : {10'000, 100'000, 1'000'000}) {
+  for (const cradle::ParticleIndex n : {100, 1000, 10'000, 100'000, 1'000'000}) {
     const ParticlesPointer particles = ring(n);
     for (const double loss : {-1.0, 0.1}) {
       const std::string of = (loss < 0 ? "sticky/cooling/" : "wet/cooling/") + std::to_string(n);

@@ -13,6 +13,7 @@ template <class Queue> void QueueEngine<Queue>::advance(double until) {
     if (i + 1 < line_.gaps()) queue_.update(i + 1, line_.due(i + 1, time));
   }
 }
+template class QueueEngine<Scan>;
 template class QueueEngine<IndexedHeap>;
 template class QueueEngine<TunedHeap>;
 template class QueueEngine<PriorityQueue>;

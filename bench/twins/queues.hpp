@@ -16,6 +16,20 @@ struct Event {
   std::uint32_t gap;
 };
 
+// None at all: every time is looked at.
+class Scan {
+ public:
+  explicit Scan(std::vector<double> due) : due_(std::move(due)) {}
+  Event first() const {
+    const auto least = std::min_element(due_.begin(), due_.end());
+    return {*least, static_cast<std::uint32_t>(least - due_.begin())};
+  }
+  void update(std::uint32_t gap, double time) { due_[gap] = time; }
+
+ private:
+  std::vector<double> due_;
+};
+
 // That of textbooks: predictions are put into a std::priority_queue and stay there. A collision invalidates those for
 // the gaps beside it. Such stale events are recognised by the number of predictions that their gap had by then, and are
 // skipped when they come to the top.
@@ -153,6 +167,7 @@ template <class Queue> class QueueEngine {
   Queue queue_;
   std::uint64_t collisions_ = 0;
 };
+using ScanEngine = QueueEngine<Scan>;
 using IndexedHeapEngine = QueueEngine<IndexedHeap>;
 using TunedHeapEngine = QueueEngine<TunedHeap>;
 using PriorityQueueEngine = QueueEngine<PriorityQueue>;

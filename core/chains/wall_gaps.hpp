@@ -53,7 +53,7 @@ template <class Line> class WallGaps : public Gravity<typename Line::Scalar> {
   }
   // The next collision there; nothing if there is none. At a wall the last answer is kept: it is asked for again when
   // the collision is made, and when the origin of time has moved.
-  std::optional<Meeting<T>> meeting(const Line& line, Slot s) const {
+  std::optional<WallMeeting<T>> meeting(const Line& line, Slot s) const {
     if (above_pile(line.particle(s))) return approach(line, s).meeting();
     const T &gap = line.gaps[s].gap, &closing = line.closing(s);
     const Pair<T> since = line.gaps.since_start(s);
@@ -189,7 +189,7 @@ template <class Line> class WallGaps : public Gravity<typename Line::Scalar> {
     T gap, closing;
     Pair<T> since;
     ParticleIndex resting;
-    std::optional<Meeting<T>> meeting;
+    std::optional<WallMeeting<T>> meeting;
   };
   mutable std::array<std::optional<Answer>, 2> last_{};  // at the left wall and at the right one
 };

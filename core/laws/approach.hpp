@@ -60,7 +60,7 @@ inline Pair<double> exact_product(double a, double b, double splitter) {
 #endif
 
 // A collision: the time until then, and its speed.
-template <Real T> struct Meeting { T in, speed; };
+template <Real T> struct WallMeeting { T in, speed; };
 
 template <Real T> class Approach {
  public:
@@ -76,13 +76,13 @@ template <Real T> class Approach {
 
   // When the particle meets the wall, and how fast; nothing if it does not. A gap that rounding has left below zero is
   // met in the past if it closes, and at a floor also where it will have the same size again.
-  std::optional<Meeting<T>> meeting() const {
+  std::optional<WallMeeting<T>> meeting() const {
     const std::optional<T> speed = meeting_speed();
     if (!speed) return {};
     const T sum = *speed + magnitude(closing_);
-    if (at_rest_or_leaving()) return Meeting<T>{T(sum / pull_), *speed};
-    if (is_negative(closing_)) return Meeting<T>{refined(T(sum / pull_), *speed), *speed};
-    return Meeting<T>{is_positive(sum) ? refined(T((gap_ + gap_) / sum), *speed) : T(0), *speed};
+    if (at_rest_or_leaving()) return WallMeeting<T>{T(sum / pull_), *speed};
+    if (is_negative(closing_)) return WallMeeting<T>{refined(T(sum / pull_), *speed), *speed};
+    return WallMeeting<T>{is_positive(sum) ? refined(T((gap_ + gap_) / sum), *speed) : T(0), *speed};
   }
 
  private:

@@ -56,7 +56,7 @@ template <Real T> class ShakenApproach {
   }
 
   // The next collision; nothing if there is none.
-  std::optional<Meeting<T>> meeting() const {
+  std::optional<WallMeeting<T>> meeting() const {
     switch (motion_.shape()) {
     case Shape::sawtooth:
       return on_teeth();
@@ -95,7 +95,7 @@ template <Real T> class ShakenApproach {
     return turns_back + T(17) * motion_.period() / T(16);
   }
 
-  std::optional<Meeting<T>> on_teeth() const {
+  std::optional<WallMeeting<T>> on_teeth() const {
     const T height = motion_.amplitude() + motion_.amplitude(), never = last_chance();
     T teeth(0);
     if (const auto free = out_of_reach(T(gap_ + place_), T(closing_ - speed_)))
@@ -124,7 +124,7 @@ template <Real T> class ShakenApproach {
     }
   }
   static T roundings(const T& time) { return T(16) * T(std::numeric_limits<T>::epsilon()) * time; }
-  static Meeting<T> unresolved(const T& time, const T& closing) {
+  static WallMeeting<T> unresolved(const T& time, const T& closing) {
     return {time, is_positive(closing) ? closing : T(0)};
   }
 
@@ -159,7 +159,7 @@ template <Real T> class ShakenApproach {
       }
     return with_wall(motion_.moment(now).wall, time);
   }
-  std::optional<Meeting<T>> on_arcs() const {
+  std::optional<WallMeeting<T>> on_arcs() const {
     const T never = last_chance(), half = motion_.period() / T(2);
     const auto speed_at_start = [&](bool upper) { return upper ? motion_.fastest() : T(-motion_.fastest()); };
     Arc arc = this_arc();
@@ -184,7 +184,7 @@ template <Real T> class ShakenApproach {
       }
       const Approach<T> here = on(arc);
       const auto wait = here.meeting();
-      if (wait && !(arc.left < wait->in)) return Meeting<T>{T(arc.time + wait->in), wait->speed};
+      if (wait && !(arc.left < wait->in)) return WallMeeting<T>{T(arc.time + wait->in), wait->speed};
       const T now = arc.time;
       arc = next(arc);
       if (never < arc.time) return {};
@@ -220,7 +220,7 @@ template <Real T> class ShakenApproach {
     const T speed = square_root(square);
     return is_positive(closing) ? T((gap + gap) / (closing + speed)) : T((speed - closing) / rate);
   }
-  std::optional<Meeting<T>> on_sine() const {
+  std::optional<WallMeeting<T>> on_sine() const {
     const T never = last_chance(), square = motion_.frequency() * motion_.frequency();
     const T greatest = pull_ + motion_.curving(), changing = motion_.curving() * motion_.frequency();
     const typename WallMotion<T>::Following phases(motion_, since_, turns_);
@@ -234,7 +234,7 @@ template <Real T> class ShakenApproach {
         const T inside = closing * closing + (rate + rate) * gap;
         const T when = time + (gap + gap) / (closing + (is_positive(inside) ? T(square_root(inside)) : T(0)));
         const T there = at(when).state.closing;
-        return Meeting<T>{when, is_positive(there) ? there : closing};
+        return WallMeeting<T>{when, is_positive(there) ? there : closing};
       }
       const T open = is_positive(gap) ? gap : T(0);
       const auto surely = open_for(open, closing, greatest);

@@ -82,11 +82,11 @@ template <Real T> class WallApproach {
     return motion_ != nullptr ? T(straight_.pull() + motion_->moment(now).wall.acceleration) : straight_.pull();
   }
   // The next collision, as in approach.hpp.
-  std::optional<Meeting<T>> meeting() const {
-    const std::optional<Meeting<T>> held = held_meeting();
+  std::optional<WallMeeting<T>> meeting() const {
+    const std::optional<WallMeeting<T>> held = held_meeting();
     if (!freed_ || (held && !(freed_->at < held->in))) return held;
     const auto free = freed_->approach.meeting();
-    return free ? std::optional<Meeting<T>>({T(freed_->at + free->in), free->speed}) : std::nullopt;
+    return free ? std::optional<WallMeeting<T>>({T(freed_->at + free->in), free->speed}) : std::nullopt;
   }
   // How long the particle has rested after a time.
   T rested(const T& time, const Pair<T>& now) const { return !rests_ ? T(0) : rests(time, now) ? time : released_; }
@@ -97,10 +97,10 @@ template <Real T> class WallApproach {
   }
 
  private:
-  std::optional<Meeting<T>> held_meeting() const {
+  std::optional<WallMeeting<T>> held_meeting() const {
     if (!shaken_) return rests_ ? std::nullopt : straight_.meeting();
     const auto meeting = shaken_->meeting();
-    return meeting ? std::optional<Meeting<T>>({T(released_ + meeting->in), meeting->speed}) : std::nullopt;
+    return meeting ? std::optional<WallMeeting<T>>({T(released_ + meeting->in), meeting->speed}) : std::nullopt;
   }
 
   bool rests(const T& time, const Pair<T>& now) const {

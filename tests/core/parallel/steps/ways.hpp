@@ -79,7 +79,7 @@ template <class Chain> void expect_same_between_walls(const std::vector<int>& ti
 // Under gravity and between shaken walls.
 template <class Chain> void expect_same_at_curved_walls(const std::vector<int>& times, double least_in_steps) {
   using T = typename Chain::Scalar;
-  for (const Scene<T>& scene : lines_at_curved_walls<T>(600, !std::same_as<Chain, GapChain<T>>))
+  for (const Scene<T>& scene : lines_at_curved_walls<T>(800, !std::same_as<Chain, GapChain<T>>))
     expect_same_by_all_laws<Chain>(scene, times, least_in_steps);
 }
 

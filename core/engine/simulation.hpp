@@ -41,7 +41,8 @@ class Simulation : public Readings<Chain> {
   // Throws std::invalid_argument if the chain holds a number that is not finite.
   Simulation(Law law, Chain chain, Policy<T> policy = {}, int least_queue_bits = 3)
       : Read(std::move(chain)), law_(std::move(law)), policy_(std::move(policy)), next_(chain_, least_queue_bits),
-        pacing_(last_collision_, Chain::may_collapse), standstill_(last_collision_), target_{} {
+        pacing_(last_collision_, Chain::may_collapse),
+        standstill_(last_collision_), target_{chain_.start(), last_collision_, last_collision_} {
     begin();
   }
   // The run from the same start with other particles, in the memory of this one.

@@ -139,7 +139,6 @@ class Simulation : public Readings<Chain> {
     Observed(const Observed&) = delete;
     Simulation& run;
   };
-
   void begin() {
     const bool watched = policy_.collapse == CollapsePolicy::stop && chain_.first() <= chain_.last();
     const T floor = watched ? watch_.begin(chain_, smallest_gap(chain_)) : T(std::numeric_limits<T>::min());

@@ -7,6 +7,7 @@
 
 #include <bit>
 #include <cmath>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -19,8 +20,16 @@
 
 namespace cradle {
 
-// Puts the velocities of the particles from `first` on.
-using VelocityDraw = std::function<void(ParticleIndex first, std::span<std::int64_t> velocities)>;
+// How velocities are drawn: those of many particles at once, from `first` on, or one after the other.
+class VelocityDraw : public std::function<void(ParticleIndex first, std::span<std::int64_t> velocities)> {
+ public:
+  using std::function<void(ParticleIndex, std::span<std::int64_t>)>::function;
+  template <std::invocable<ParticleIndex> OfOne>
+  VelocityDraw(const OfOne& velocity)
+      : function([velocity](ParticleIndex first, std::span<std::int64_t> velocities) {
+          for (std::int64_t& each : velocities) each = velocity(first++);
+        }) {}
+};
 
 inline std::vector<std::int64_t> drawn(const VelocityDraw& draw, ParticleIndex first, ParticleIndex count) {
   std::vector<std::int64_t> velocities(static_cast<std::size_t>(count));

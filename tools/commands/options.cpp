@@ -182,7 +182,11 @@ Action CommandLine::read(int argc, const char* const* argv) {
     const std::vector<std::string> more = program_->remaining(true);
     if (more.front().starts_with("--") && !program_->get_subcommands().empty())
       throw unknown_option(*program_, more.front());
-    throw misread(*program_, "more than this command takes", fmt::format("{}", fmt::join(more, " ")));
+    const std::string command = words_of(*program_), found = fmt::format("{}", fmt::join(more, " "));
+    if (command.ends_with(" plot"))
+      throw Error({}, "more than this command takes", found,
+                  "give one result at a time; several runs in one picture are in the manual's how-to-look.md");
+    throw misread(*program_, "more than this command takes", found);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() != 0) throw misread(*program_, error.what(), "");
     std::ostringstream text;  // --help, --version

@@ -92,7 +92,7 @@ Group EnsembleState::quantity_group(const Quantity& quantity, const Moments& tot
   return group;
 }
 
-Group EnsembleState::spread_group(const Spread& spread) const {
+Group EnsembleState::spread_group(const Spread& spread, const Moments& total) const {
   const auto& [quantity, counts] = spread;
   const FixedBins& bins = counts.bins();
   std::vector<double> edges;
@@ -104,8 +104,12 @@ Group EnsembleState::spread_group(const Spread& spread) const {
        {"counts", "1", "replicas below the bins, in each of them, above them", counts.all_counts(), bins.bins + 2}}};
   for (const int percent : {5, 25, 50, 75, 95}) {
     std::vector<double> quantiles;
-    for (std::size_t entry = 0; entry < counts.entries(); ++entry)
-      quantiles.push_back(counts.quantile(entry, percent / 100.0));
+    for (std::size_t entry = 0; entry < counts.entries(); ++entry) {
+      quantiles.push_back(counts.quantile(entry, percent / 100.0));  // within a bin: it may lie beyond all values
+      const std::size_t i = quantity.offset + entry;
+      if (total.replicas > 0)
+        quantiles.back() = std::min(std::max(quantiles.back(), total.least[i]), total.greatest[i]);
+    }
     group.columns.push_back({fmt::format("quantile_{:02}", percent), quantity.unit,
                              fmt::format("{} % of the replicas are below, to the width of a bin", percent),
                              std::move(quantiles), quantity.width});
@@ -151,7 +155,7 @@ std::vector<Group> EnsembleState::groups() const {
     }
     groups.push_back(quantity_group(quantity, total));
   }
-  for (const Spread& spread : spreads_) groups.push_back(spread_group(spread));
+  for (const Spread& spread : spreads_) groups.push_back(spread_group(spread, total));
   groups.push_back(replica_group());
   if (!failed.empty()) {
     std::vector<std::uint64_t> index;
@@ -207,7 +211,7 @@ void EnsembleState::read(const Result& result, const std::string& file) {
   }
   kept_ = separated_tables(result, name(""), file);
   for (std::size_t k = 0; k < spreads_.size(); ++k)
-    take_counts(k, get<std::uint64_t>(get(result, spread_group(spreads_[k]).name, file), "counts", file), file);
+    take_counts(k, get<std::uint64_t>(get(result, spread_group(spreads_[k], {}).name, file), "counts", file), file);
 }
 
 }  // namespace cradle::tools

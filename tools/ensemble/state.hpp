@@ -123,7 +123,7 @@ class EnsembleState {
   void take(TreeNode&& node, const std::string& from);
   void check_replicas(const std::string& file) const;
   Group quantity_group(const Quantity& quantity, const Moments& total) const;
-  Group spread_group(const Spread& spread) const;
+  Group spread_group(const Spread& spread, const Moments& total) const;
   Group replica_group() const;
 
   std::string group_;

@@ -122,7 +122,7 @@ std::string apart(const Scene& scene) {
 }
 
 // The text for standard error; empty if everything was resolved.
-std::string account_warning(const ReportedAccount& account, const Scene& scene) {
+std::string account_warning(const ReportedAccount& account, const Scene& scene, bool rests) {
   const Run& run = scene.run;
   std::string text;
   if (account.order_lost > 0)
@@ -141,13 +141,17 @@ std::string account_warning(const ReportedAccount& account, const Scene& scene) 
         "in {} collisions three particles met at one time, within rounding: then the numbers do not say which pair "
         "collides first, and the left one is taken; {} (particles that rest on one another always meet so)\n",
         account.simultaneous, apart(scene));
-  if (account.uncertain)
+  const double grown = account.first_uncertain.gap;  // 0 where double has nothing so small
+  if (account.uncertain && !rests)
     text += fmt::format(
-        "collisions are certain up to t = {} only: there rounding, which has grown to {:.1e} {}, may have decided "
-        "which one was next ({:.0f} digits of a length of 1 are left in {}); the collisions after it are those of a "
-        "system that starts a rounding away. {} more digits (run.precision), and `cradle trust` to see how many\n",
-        account.first_uncertain.time.text(), account.first_uncertain.gap, place(account.first_uncertain.particle),
-        std::max(0., -std::log10(account.first_uncertain.gap)), precision_name(run),
+        "collisions are certain up to t = {} only: there rounding{} {}, may have decided which one was next{}; the "
+        "collisions after it are those of a system that starts a rounding away. {} more digits (run.precision), and "
+        "`cradle trust` to see how many\n",
+        account.first_uncertain.time.text(), grown > 0 ? fmt::format(", which has grown to {:.1e}", grown) : ",",
+        place(account.first_uncertain.particle),
+        grown > 0 ? fmt::format(" ({:.0f} digits of a length of 1 are left in {})", std::max(0., -std::log10(grown)),
+                                precision_name(run))
+                  : "",
         measures_averages(scene) ? "Averages over many collisions are as good from it; to follow one motion use"
                                  : "Use");
   if (account.uncertain_end)
@@ -157,8 +161,8 @@ std::string account_warning(const ReportedAccount& account, const Scene& scene) 
   return text;
 }
 
-// The warning when time or a gap cannot get smaller.
-std::string exhausted_warning(const std::string& time, std::uint64_t collisions, const Scene& scene) {
+// The warning when time or a gap cannot get smaller; `rests`: of one particle, on a floor.
+std::string exhausted_warning(const Number& time, std::uint64_t collisions, const Scene& scene, bool rests) {
   const Run& run = scene.run;
   const bool stops = run.collapse == scene::CollapsePolicy::stop, cut_off = scene.law.cutoff > Decimal("0");
   const std::string floor = collapsing_floor(scene);
@@ -173,8 +177,13 @@ std::string exhausted_warning(const std::string& time, std::uint64_t collisions,
     remedies += run.precision == Precision::mpfr
                     ? ", or more digits (run.digits)"
                     : ", or more digits (run.precision; long double reaches gaps of 1e-4932, mpfr any)";
+  if (rests)
+    return fmt::format(
+        "the particle has come to rest on the {} wall at about t = {:.6g} ({} collisions): its rebounds can get "
+        "no smaller in {}; for the run to go on, use {}\n",
+        floor.substr(floor.find('.') + 1), time.value, collisions, precision_name(run), remedies);
   return fmt::format("resolution exhausted (t = {}, {} collisions): time or a gap can get no smaller in {}{}; use {}\n",
-                     time, collisions, precision_name(run),
+                     time.text(), collisions, precision_name(run),
                      stops ? ", and that this is an inelastic collapse is not proved" : "", remedies);
 }
 
@@ -272,9 +281,11 @@ RunEnding::RunEnding(const Scene& scene, const AnyEngine& engine, const Moment& 
     account.uncertain_end = true;
     account.first_uncertain = {now.time.meant, 0, *particle};
   }
-  outcome.warning = account_warning(account, scene);
+  // Of a single particle that comes to rest no digits decide which collision is next.
+  const bool rests = status == Status::exhausted && engine.particles() == 1 && !collapsing_floor(scene).empty();
+  outcome.warning = account_warning(account, scene, rests);
   if (status == Status::exhausted)
-    outcome.warning += exhausted_warning(now.time.exact.text(), outcome.collisions, scene);
+    outcome.warning += exhausted_warning(now.time.exact, outcome.collisions, scene, rests);
   attributes = {{"simultaneous_collisions", account.simultaneous},
                 {"order_lost", account.order_lost},
                 {"unresolved_gaps", account.unresolved},

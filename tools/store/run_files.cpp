@@ -40,7 +40,7 @@ RunFiles::RunFiles(std::string file, const Scene& scene, Force force)
     refuse("work of another command that is not finished", header->kind);
   } else if (header) {
     const auto statuses = read_run_journal(path, Reading::ends).statuses;
-    const bool same = scene_of(*header, path) == scene;
+    const bool same = header->scene == effective_toml(scene);  // whatever cannot change a result
     if (!statuses.empty() && (!same || statuses.back().seconds > worth_keeping))
       refuse(same ? "a run that is not finished" : "a run of other settings that is not finished",
              fmt::format("t = {:.6g}, {:.0f} s of computing", statuses.back().time, statuses.back().seconds));

@@ -66,6 +66,21 @@ class Pictures(small.Case):
         self.assertNotIn("cooling", cradle.plot.names(small.tagged()))
         figure = cradle.plot.ensemble(small.tagged_ensemble())
         self.assertEqual([text for ax in figure.axes for text in ax.get_legend_handles_labels()[1]], [])
+        axes = cradle.plot.energy(small.tagged()).axes[0]
+        self.assertAlmostEqual(np.mean(axes.get_ylim()) / axes.get_lines()[0].get_ydata()[0], 1)
+
+    def test_the_sticky_gas_is_drawn_from_where_it_is_below_the_energy_at_the_start(self):
+        cooling = {"initial.particles": 200, "run.until": 50, "output.snapshots": [], "output.series.points": 200}
+        with cradle.ensemble("cooling", 2, cooling, output="cooling.h5") as result:
+            start = result.series["energy"]["mean"][0]
+            lines = {line.get_label(): line for line in cradle.plot.ensemble(result).axes[0].get_lines()}
+        self.assertTrue(0.5 < lines["sticky gas"].get_ydata().max() / start <= 1)
+
+    def test_snapshots_that_are_left_out_are_counted(self):
+        for times, said in ((range(10, 50, 5), ""), (range(10, 60, 5), "8 of 10 snapshots")):
+            with cradle.run("fig2", small.SHOCK | {"output.snapshots": list(times)}, output="many.h5",
+                            force=True) as result:
+                self.assertEqual(cradle.plot.shock(result).axes[0].get_title("right"), said)
 
     def test_an_ensemble_of_a_gas_has_no_front(self):
         gas = {"law": {"type": "inelastic", "restitution": 0.9}, "initial": {"type": "gas", "particles": 20},

@@ -128,7 +128,8 @@ TEST_F(Files, OtherVersionsAreRefusedByName) {
 }
 
 TEST_F(Files, ARunThatIsNotFinishedIsNotThrownAwayByAnother) {
-  const Scene same = parse_scene(header().scene, "s.toml");
+  Scene same = parse_scene(header().scene, "s.toml");
+  same.output.checkpoint.every_seconds = Decimal("1");  // changes no result, and is not in the journal
   for (const double seconds : {3.0, 3600.0}) {
     {
       JournalWriter journal(path("a.h5.part"), header());

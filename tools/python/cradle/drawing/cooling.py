@@ -51,7 +51,7 @@ def draw_cooling(result, theory, panels):
     later, time, energy, law = cooled(result)
     merging = result.law in ("sticky", "wet")
     axes = panels.stacked(3 if merging else 2, height=2.2, sharex=True)
-    asymptotic = law < 2 * energy[0]
+    asymptotic = law <= result.means["energy"][0] / particles
     axes[0].loglog(time, energy, color=BLUE, lw=1.6, label="simulation")
     axes[0].plot(time[asymptotic], law[asymptotic], "k--", label=r"sticky gas, $0.2214\,s^2\tau^{-2/3}$")
     known = [name for name in dict.fromkeys(row[0] for row in theory.rows) if name.startswith("energy")]

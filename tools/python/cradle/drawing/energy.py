@@ -28,6 +28,9 @@ def draw_energy(result, theory, units, panels):
         if quantity == "energy" and len(t):  # the linear profiles are meant for the expanding front
             shown = t <= 1.3 * (theory.number("turnover_time") or np.inf)
             t, value = t[shown], value[shown]
+        if quantity == "energy_sticky":  # a law for late times begins above the energy at the start
+            shown = value <= 1.001 * series["energy"][0]
+            t, value = t[shown], value[shown]
         if len(t) and t[-1] > 0.02 * series["time"][-1]:  # else it would not be seen
             top.plot(t / units.t, value / units.energy, "k" + line, lw=1.3, label=label)
     onset = theory.number("collapse_onset_time")
@@ -36,9 +39,10 @@ def draw_energy(result, theory, units, panels):
             ax.axvline(onset / units.t, color=GREY, lw=1, zorder=0, label="onset of collapse" if ax is top else None)
     top.set_xlim(time[0], time[-1])
     least, most = energy.min(), energy.max()
-    top.set_ylim(0 if least < 0.6 * most else least - 0.1 * (most - least), 1.05 * most if most > 0 else 1)
+    change = most - least if most - least > 1e-9 * most else most  # rounding alone is none
+    top.set_ylim(0 if least < 0.6 * most else least - 0.1 * change, 1.05 * most if most > 0 else 1)
     if top.get_ylim()[0] > 0:
-        top.set_ylim(top=most + 0.1 * (most - least or most))
+        top.set_ylim(top=most + 0.1 * change)
     top.set_ylabel(units.label(r"kinetic energy $E$ ($m\,l^2/t^2$)", units.energy_label()))
     draw_collisions(below, series, time)
     below.set_xlabel(units.time_label())

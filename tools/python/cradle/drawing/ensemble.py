@@ -59,6 +59,8 @@ def draw_series(result, theory, units, panels):
         quantity, label = predicted.get(name, ("", ""))
         t, value = theory.curve(quantity)
         inside = t / units.t <= time[-1]
+        if quantity == "energy_sticky":
+            inside &= value <= 1.001 * result.series["energy"]["mean"][0]
         if inside.any():
             ax.plot(t[inside] / units.t, value[inside] / scale[name], "k--", lw=1,
                     label=label or theory.equation(quantity))
@@ -73,7 +75,7 @@ def show_cooling(axes, result, time):
     """A logarithmic time axis from the first collisions, with the law of the sticky gas."""
     later, _, _, law = cooled(result)
     law = law * ring_of(result)[0]
-    shown = law < 2 * result.series["energy"]["max"][0]
+    shown = law <= result.series["energy"]["mean"][0]
     axes[0].plot(time[later][shown], law[shown], "k--", lw=1, label="sticky gas")
     axes[0].set_yscale("log")
     axes[-1].set(xscale="log", xlim=(time[later][0], time[-1]))

@@ -5,8 +5,9 @@ If particles merge, the density of mass is drawn, not that of particles.
 import numpy as np
 
 from .structure import core_of
-from .style import GREY, beside, times_of, thinned
+from .style import GREY, beside, note, times_of, thinned
 
+MOST = 8                 # snapshots and profiles; those of Figs. 2 and 6 are all drawn
 BIN_PARTICLES = 25       # bins of mean velocity are merged to hold so many: the two rows alternate, and fewer alias
 
 
@@ -52,11 +53,10 @@ def merged(profile):
 
 def draw_shock(result, theory, units, panels):
     """Velocities of single particles, averaged velocities, density."""
-    most = 8 if result.law == "wet" else 7  # a wet shock goes through one stage more
-    snapshots = thinned(result.snapshots, most)
+    snapshots = thinned(result.snapshots, MOST)
     profiles = profiles_of(result) or [averaged(s) for s in snapshots if len(s["x"]) > 2 and np.ptp(s["x"]) > 0]
     common = [p for p in profiles if p["time"] in {s["time"] for s in snapshots}]
-    profiles = thinned(common if len(common) > 1 else profiles, most)
+    profiles = thinned(common if len(common) > 1 else profiles, MOST)
     colour, name = times_of(snapshots + profiles, units)
     axes = panels.stacked(bool(snapshots) + 2 * bool(profiles), width=6.4, height=2.5, margin=0.5, sharex=True)
     axes[-1].set_xlabel(units.position_label())
@@ -65,6 +65,8 @@ def draw_shock(result, theory, units, panels):
     named = set()
     if snapshots:
         named = {group["time"] for group in snapshots}
+        if len(snapshots) < len(result.snapshots):
+            note(axes[0], f"{len(snapshots)} of {len(result.snapshots)} snapshots")
         draw_velocities(axes.pop(0), snapshots, theory, units, colour, name)
     if profiles:
         for group in profiles:

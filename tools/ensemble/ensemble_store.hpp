@@ -1,7 +1,8 @@
 // The ensembles of one result file, and the journals that keep finished replicas safe during the work:
 //
 //   FILE         the result of earlier calls, written at the end, in one step
-//   FILE.part    journal: replicas finished since then, appended in batches of about a hundredth of a second; it survives
+//   FILE.part    journal: replicas finished since then, appended in batches of about a hundredth of a second; it
+//   survives
 //                any end of the program
 //   FILE.part.R  the same by rank R of an MPI job
 //

@@ -141,17 +141,14 @@ std::string account_warning(const ReportedAccount& account, const Scene& scene, 
         "in {} collisions three particles met at one time, within rounding: then the numbers do not say which pair "
         "collides first, and the left one is taken; {} (particles that rest on one another always meet so)\n",
         account.simultaneous, apart(scene));
-  const double grown = account.first_uncertain.gap;  // 0 where double has nothing so small
-  if (account.uncertain && !rests)
+  if (const double grown = account.first_uncertain.gap; account.uncertain && !rests)
     text += fmt::format(
-        "collisions are certain up to t = {} only: there rounding{} {}, may have decided which one was next{}; the "
-        "collisions after it are those of a system that starts a rounding away. {} more digits (run.precision), and "
-        "`cradle trust` to see how many\n",
-        account.first_uncertain.time.text(), grown > 0 ? fmt::format(", which has grown to {:.1e}", grown) : ",",
-        place(account.first_uncertain.particle),
-        grown > 0 ? fmt::format(" ({:.0f} digits of a length of 1 are left in {})", std::max(0., -std::log10(grown)),
-                                precision_name(run))
-                  : "",
+        "collisions are certain up to t = {} only: there rounding, which has grown to {} {}, may have decided "
+        "which one was next ({:.0f} digits of a length of 1 are left in {}); the collisions after it are those of a "
+        "system that starts a rounding away. {} more digits (run.precision), and `cradle trust` to see how many\n",
+        account.first_uncertain.time.text(), grown > 0 ? fmt::format("{:.1e}", grown) : "less than 1e-308",
+        place(account.first_uncertain.particle), std::max(0., -std::log10(std::max(grown, 1e-308))),
+        precision_name(run),
         measures_averages(scene) ? "Averages over many collisions are as good from it; to follow one motion use"
                                  : "Use");
   if (account.uncertain_end)
@@ -172,21 +169,18 @@ std::string exhausted_warning(const Number& time, std::uint64_t collisions, cons
   remedies += cut_off ? "a higher law.cutoff, or none, with which a run ends at a collapse" : "a law.cutoff";
   if (!cut_off && !run.stop_gap)
     remedies += stops ? ", or run.stop_gap to end there" : ", or run.collapse = \"stop\" to end there";
-  // On a floor no number of digits is enough.
-  if (floor.empty())
+  if (floor.empty())  // on a floor no number of digits is enough
     remedies += run.precision == Precision::mpfr
                     ? ", or more digits (run.digits)"
                     : ", or more digits (run.precision; long double reaches gaps of 1e-4932, mpfr any)";
   if (rests)
-    return fmt::format(
-        "the particle has come to rest on the {} wall at about t = {:.6g} ({} collisions): its rebounds can get "
-        "no smaller in {}; for the run to go on, use {}\n",
-        floor.substr(floor.find('.') + 1), time.value, collisions, precision_name(run), remedies);
+    return fmt::format("the particle has come to rest on the {} wall at about t = {:.6g} ({} collisions): for the "
+                       "run to go on, use {}\n",
+                       floor.substr(floor.find('.') + 1), time.value, collisions, remedies);
   return fmt::format("resolution exhausted (t = {}, {} collisions): time or a gap can get no smaller in {}{}; use {}\n",
                      time.text(), collisions, precision_name(run),
                      stops ? ", and that this is an inelastic collapse is not proved" : "", remedies);
 }
-
 // How a run ended, from the engine's status; `order_lost` is from the account.
 RunEnd end_of(Status status, bool order_lost) {
   if (status == Status::collapsed) return RunEnd::collapsed;

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "cradle/core/chains/cluster_line.hpp"
@@ -113,12 +114,18 @@ class StepLine {
     if (k == 0) keep_tile(tiles() - 1), keep_tile(tiles() - 2);  // the last one may not be full
     if (k + 2 >= tiles()) keep_tile(tiles() - 1), keep_tile(0);
   }
-  // A place by links, on the line; its tile is guarded.
-  std::size_t guarded(std::ptrdiff_t i) {
-    const auto on_line =
-        static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(i, 0, static_cast<std::ptrdiff_t>(gaps_) - 1));
-    guard(on_line / tile);
-    return on_line;
+  // The gaps beside one by links, on the line, with the tiles of all that a collision there may change guarded.
+  std::pair<std::size_t, std::size_t> guarded_by_links(std::size_t i) {
+    const auto guarded = [&](std::ptrdiff_t at) {
+      const auto on_line =
+          static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(at, 0, static_cast<std::ptrdiff_t>(gaps_) - 1));
+      guard(on_line / tile);
+      return on_line;
+    };
+    const std::size_t left = guarded(linked_left(static_cast<std::ptrdiff_t>(i))),
+                      right = guarded(linked_right(static_cast<std::ptrdiff_t>(i)));
+    guarded(linked_right(static_cast<std::ptrdiff_t>(right)));
+    return {left, right};
   }
   void restore() {
     listed_to = -never, left = 0;

@@ -223,12 +223,8 @@ int step(StepLine& line, const StepTask& task, StepScalars& scalars, double end,
     collisions.make(line, l, task, scalars, end);
     for (std::size_t k = 0; k < l.at_edges; ++k) {
       const std::size_t i = l.edges[k];
-      std::size_t left = line.left_of(i), right = line.right_of(i);
-      if constexpr (Collisions::linked) {
-        left = line.guarded(line.linked_left(static_cast<std::ptrdiff_t>(i)));
-        right = line.guarded(line.linked_right(static_cast<std::ptrdiff_t>(i)));
-        line.guarded(line.linked_right(static_cast<std::ptrdiff_t>(right)));
-      }
+      const auto [left, right] =
+          Collisions::linked ? line.guarded_by_links(i) : std::pair(line.left_of(i), line.right_of(i));
       const bool left_later = l.due[left] > end, right_later = l.due[right] > end;
       if (!scalars.collide(i)) return -1;
       follow(l, left, left_later & (l.due[left] <= end), right, right_later & (l.due[right] <= end));

@@ -10,6 +10,8 @@
 
 #include "cradle/tests/tools/ensemble/ensembles.hpp"
 #include "cradle/tests/tools/ensemble/failing_replicas.hpp"
+#include "cradle/tools/ensemble/replica_run.hpp"
+#include "cradle/tools/support/bytes.hpp"
 
 namespace cradle::tests::ensemble_test {
 
@@ -192,6 +194,32 @@ TEST_F(Ensembles, NumbersOfWholeRunsAreColumnsOfTheTable) {
   const RunOutcome alone = tools::run_scene(replica, {tools::ProgressLine::Show::never});
   EXPECT_EQ(numbers(read("a.h5"), "replicas", "energy")[1], alone.energy);
   for (const auto& [name, value] : alone.summary) EXPECT_EQ(numbers(read("a.h5"), "replicas", name)[1], value);
+}
+
+// What a thread keeps from one replica to the next does not show: the records are those of runs that are made anew.
+TEST_F(Ensembles, ReplicasThatBeginARunAgainAreRunsOfTheirOwn) {
+  const std::string gas = "initial = { type = 'gas', particles = 20 }\nrun.until = 5\n";
+  for (const std::string& text :
+       {std::string(shock), std::string(collapse), std::string(wet),
+        gas +
+            "law.restitution = 0.9\nlaw.cutoff = 1e-3\ninitial.random_masses = [0.1, 1e3]\noutput.series.points = 9\n",
+        gas +
+            "law.restitution = 0.9\nlaw.cutoff = 1e-3\nrun.precision = 'double-double'\noutput.series.points = 4\n"}) {
+    const Scene scene = tools::parse_scene(text, "again.toml");
+    const tools::EnsembleState state("", scene, {});
+    tools::Interrupt interrupt;
+    const tools::ReplicaRunner none;
+    tools::ReplicaRun runs(state, none, interrupt);
+    tools::EnsembleRecord again, alone;
+    for (std::uint64_t k = 0; k < 5; ++k) {
+      runs.add(k, again);
+      const RunOutcome run = tools::run_scene(tools::replica_scene(scene, k), {tools::ProgressLine::Show::never});
+      state.put(alone, state.layout().row(k, run), state.layout().values(run));
+    }
+    EXPECT_EQ(again.rows.size(), 5U);
+    EXPECT_TRUE(again.messages.empty()) << text;
+    EXPECT_TRUE(tools::to_bytes(again) == tools::to_bytes(alone)) << text;
+  }
 }
 
 }  // namespace cradle::tests::ensemble_test

@@ -131,7 +131,9 @@ TEST(Architecture, CoreUsesNoStandardMathematicsOnTheScalar) {
                                         "core/base/counter_rng.hpp",
                                         "core/base/elementary.hpp",  // exponents
                                         "core/base/real.hpp",        // a double, taken apart
+                                        "core/laws/approach.hpp",    // products of doubles
                                         "core/laws/wall.hpp",        // random speeds
+                                        "core/initial/velocities.hpp",
                                         "core/ensemble/histogram.hpp",
                                         "core/ensemble/moments.hpp",
                                         "core/queue/event_queue.hpp",

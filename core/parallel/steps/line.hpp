@@ -122,10 +122,10 @@ class StepLine {
       guard(on_line / tile);
       return on_line;
     };
-    const std::size_t left = guarded(linked_left(static_cast<std::ptrdiff_t>(i))),
-                      right = guarded(linked_right(static_cast<std::ptrdiff_t>(i)));
-    guarded(linked_right(static_cast<std::ptrdiff_t>(right)));
-    return {left, right};
+    const std::size_t before = guarded(linked_left(static_cast<std::ptrdiff_t>(i))),
+                      behind = guarded(linked_right(static_cast<std::ptrdiff_t>(i)));
+    guarded(linked_right(static_cast<std::ptrdiff_t>(behind)));
+    return {before, behind};
   }
   void restore() {
     listed_to = -never, left = 0;

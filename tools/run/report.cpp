@@ -275,8 +275,8 @@ RunEnding::RunEnding(const Scene& scene, const AnyEngine& engine, const Moment& 
     account.uncertain_end = true;
     account.first_uncertain = {now.time.meant, 0, *particle};
   }
-  // Of a single particle that comes to rest no digits decide which collision is next.
-  const bool rests = status == Status::exhausted && engine.particles() == 1 && !collapsing_floor(scene).empty();
+  const bool rests = status == Status::exhausted && engine.particles() == 1 && !collapsing_floor(scene).empty() &&
+                     scene.run.coordinates == Coordinates::gaps;  // then no digits decide which collision is next
   outcome.warning = account_warning(account, scene, rests);
   if (status == Status::exhausted)
     outcome.warning += exhausted_warning(now.time.exact, outcome.collisions, scene, rests);

@@ -198,13 +198,13 @@ TEST_F(Ensembles, NumbersOfWholeRunsAreColumnsOfTheTable) {
 
 // What a thread keeps from one replica to the next does not show: the records are those of runs that are made anew.
 TEST_F(Ensembles, ReplicasThatBeginARunAgainAreRunsOfTheirOwn) {
-  const std::string gas = "initial = { type = 'gas', particles = 20 }\nrun.until = 5\n";
+  const std::string law = "law = { type = 'inelastic', restitution = 0.9, cutoff = 1e-3 }\n";
   for (const std::string& text :
        {std::string(shock), std::string(collapse), std::string(wet),
-        gas +
-            "law.restitution = 0.9\nlaw.cutoff = 1e-3\ninitial.random_masses = [0.1, 1e3]\noutput.series.points = 9\n",
-        gas +
-            "law.restitution = 0.9\nlaw.cutoff = 1e-3\nrun.precision = 'double-double'\noutput.series.points = 4\n"}) {
+        law + "initial = { type = 'gas', particles = 20, random_masses = [0.1, 1e3] }\nrun.until = 5\n"
+              "output.series.points = 9\n",
+        law + "initial = { type = 'gas', particles = 20 }\nrun = { until = 5, precision = 'double-double' }\n"
+              "output.series.points = 4\n"}) {
     const Scene scene = tools::parse_scene(text, "again.toml");
     const tools::EnsembleState state("", scene, {});
     tools::Interrupt interrupt;

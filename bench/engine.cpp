@@ -173,7 +173,7 @@ int main(int argc, char** argv) {
              {{999.5, 384155}, {1999, 1299216}, {4000, 4685816}, {6000, 16156905}, {6500, 0}}});
   for (const ParticleIndex n : {100'000, 1'000'000})
     enter_all({"shock/" + std::to_string(n), always(rows<double>(n)), {{2000, 0}, {4000, 0}}});
-  for (const ParticleIndex n : {10, 30, 100, 300})
+  for (const ParticleIndex n : {3, 10, 30, 100, 300})
     enter_all({"gas/" + std::to_string(n), [=](std::uint64_t run) { return gas(n, 1, 0., run); }, {{300, 0}}, true});
   const std::pair<ParticleIndex, double> gases[] = {
       {1000, 300}, {8000, 300}, {100'000, 40}, {1'000'000, 40}, {10'000'000, 20}};

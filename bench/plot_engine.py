@@ -40,7 +40,7 @@ def read(path):
 
 
 def main(dry, wet, out):
-    figure, panels = plt.subplots(1, 2, figsize=(10.5, 4.6), layout="constrained", sharey=True)
+    figure, panels = plt.subplots(1, 2, figsize=(10.5, 5.4), layout="constrained", sharey=True)
     for axes, path, title in zip(panels, (dry, wet), ("dry gas on a line", "wet particles that cool on a ring")):
         found = read(path)
         for engine, (name, colour, style) in ENGINES.items():
@@ -49,7 +49,7 @@ def main(dry, wet, out):
                 axes.plot(*zip(*points), style, color=colour, label=name, markersize=5)
         axes.set(xscale="log", yscale="log", xlabel="particles $N$", title=title)
         axes.grid(True, which="both", color="0.92")
-        axes.legend(frameon=False, fontsize=9)
+        axes.legend(frameon=False, fontsize=9, ncols=2, loc="upper center", bbox_to_anchor=(0.5, -0.14))
     panels[0].set_ylabel("time per collision (ns)")
     figure.savefig(out, dpi=150)
 

@@ -272,6 +272,7 @@ template <Real T> class ClusterSegment {
       if (n == own_first_) own_first_ = right(n);
       if (n == own_last_) own_last_ = s;
       if (n == seam_) seam_ = s;
+      if (right_end_ && reached_right_ < own_first_) notice = Notice::needs_slots;  // the front is in another segment
     }
     set_inner();
     return {own, notice};

@@ -23,7 +23,7 @@ ENGINES = {"cradle_two_threads": ("Cradle, two threads (by the clock)", "#D55E00
            "tuned_heap": ("positions, tuned heap", "0.35", "^-"),
            "indexed_heap": ("positions, indexed heap", "0.6", "v-"),
            "conventional": ("positions, links, indexed heap", "0.6", "v-"),
-           "scan": ("positions, all times looked at", "#CC79A7", "x-")}
+           "scan": ("positions, all times compared", "#CC79A7", "x-")}
 
 
 def read(path):

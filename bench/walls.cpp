@@ -7,8 +7,8 @@
 //          in doubles that looks for a sign change in steps of a 64th of a period, and then halves and takes Newton
 //          steps, which may miss what happens within such a step. Both must count the same bounces while they can:
 //          the chaotic motion is another one after some fifty.
-// column   1000 beads under gravity on a floor that is at rest, saws or moves like a sine, and 1000 between walls at
-//          rest, in segments and steps on one thread and in the plain loop.
+// column   1000 beads under gravity on a floor at rest, on one that moves like a sawtooth or a sine, and 1000 between
+//          walls at rest; in segments and steps on one thread, and in the plain loop.
 //
 // Times are processor time of the thread. Debian's Google Benchmark prints "library was built as DEBUG": that concerns
 // its own timers.

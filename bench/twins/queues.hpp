@@ -16,7 +16,7 @@ struct Event {
   std::uint32_t gap;
 };
 
-// None at all: every time is looked at.
+// No queue: all times are compared.
 class Scan {
  public:
   explicit Scan(std::vector<double> due) : due_(std::move(due)) {}

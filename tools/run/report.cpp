@@ -175,7 +175,7 @@ std::string exhausted_warning(const Number& time, std::uint64_t collisions, cons
                     : ", or more digits (run.precision; long double reaches gaps of 1e-4932, mpfr any)";
   if (rests)
     return fmt::format("the particle has come to rest on the {} wall at about t = {:.6g} ({} collisions): for the "
-                       "run to go on, use {}\n",
+                       "run to continue, use {}\n",
                        floor.substr(floor.find('.') + 1), time.value, collisions, remedies);
   return fmt::format("resolution exhausted (t = {}, {} collisions): time or a gap can get no smaller in {}{}; use {}\n",
                      time.text(), collisions, precision_name(run),

@@ -88,7 +88,7 @@ ListedParticles last_state(const std::string& file, Scene& scene) {
   if ((other.walls.any() && !scene.walls.any()) || (other.gravity.acts() && !scene.gravity.acts()))
     scene.remarks +=
         fmt::format("{}a state of a run with walls or gravity, which this scene lacks (found {}): repeat "
-                    "[walls] and [gravity] of that run, if it is to go on\n",
+                    "[walls] and [gravity] of that run, if it is to continue\n",
                     scene.place("initial.file").prefix(), scene.walls.any() ? "no [gravity]" : "no [walls]");
   const NumberRange range(scene.run);
   for (const DecimalColumn* numbers : {&listed.x, &listed.v, &listed.m})

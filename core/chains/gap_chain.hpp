@@ -129,7 +129,7 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain : public Gap
  private:
   using Ends::find_inner, Ends::is_inner, Ends::foresee_walls, Ends::widen, Ends::enter_carried, Ends::find_lost_digits;
   using Ends::line_, Ends::range_, Ends::particles_, Ends::memory_, Ends::walls_, Ends::wall_gaps_, Ends::left_;
-  using Ends::right_, Ends::centre_, Ends::fastest_, Ends::slot_in_pile, Ends::flight, Ends::lay_out;
+  using Ends::right_, Ends::fastest_, Ends::slot_in_pile, Ends::flight, Ends::lay_out;
 
   GapChain(std::shared_ptr<const Particles<T>> particles, const T& start, GapRange held,
            typename Line::Gaps::Memory memory = {})
@@ -143,10 +143,7 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain : public Gap
     left_.take(particle(first()));
     right_.take(particle(last()) + 1);
     for (Slot s = first(); s <= last(); ++s) fastest_ = std::max(fastest_, magnitude(closing(s)));
-    if (on_ring()) {
-      range_.place_seam();
-      centre_ = particles_->centre_of_mass();
-    }
+    if (on_ring()) range_.place_seam();
     find_inner();
   }
 

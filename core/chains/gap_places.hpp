@@ -197,7 +197,8 @@ template <Real T, class Masses> class GapPlaces : public HeldGaps<T, Masses> {
     c.closure_gap = particles_->circumference() - way.value();
     c.closure_speed = -slowing.value();
     const T mass = particles_->total_mass(), drift = particles_->momentum() / mass;
-    const Pair<T> start = two_sum(centre_, T(drift * clock().elapsed(time))) - T(moment.value() / mass);
+    if (!centre_) centre_ = particles_->centre_of_mass();
+    const Pair<T> start = two_sum(*centre_, T(drift * clock().elapsed(time))) - T(moment.value() / mass);
     const T stretch = *c.closure_gap / way.value();
     const T speed = drift + momentum.value() / mass;
     for (std::size_t j = 0; j < ways.size(); ++j) {

@@ -147,8 +147,8 @@ template <Real T, class Masses> class HeldGaps {
   Line line_;
   HeldRange range_;
   CollisionMemory<T> memory_;
-  T centre_{0};   // on a ring: centre of mass at the start
-  T fastest_{0};  // closing speed at the start
+  mutable std::optional<T> centre_;  // on a ring: centre of mass at the start, from when it is first needed
+  T fastest_{0};                     // closing speed at the start
   Anchor<T> left_, right_;
   Walls<T> walls_;
   WallGaps<Line> wall_gaps_;

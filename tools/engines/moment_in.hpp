@@ -171,6 +171,10 @@ template <Real T> class MomentIn final : public Moment {
     if (!value) value.emplace(f());
     return *value;
   }
+  template <class Value, class F> static const Value& computed(std::unique_ptr<const Value>& value, F f) {
+    if (!value) value = std::make_unique<const Value>(f());
+    return *value;
+  }
   const Sample<T>& sampled() const {
     return computed(sample_, [&] { return run_.sample(particles_.kinetic_energy(), time_); });
   }
@@ -197,10 +201,10 @@ template <Real T> class MomentIn final : public Moment {
   bool at_collision_;
   mutable std::optional<Sample<T>> sample_;
   mutable std::optional<SampledState> state_;
-  mutable std::optional<Configuration<T>> configuration_;
-  mutable std::optional<Cloud<T>> cloud_;
-  mutable std::optional<SampledCloud> sampled_cloud_;
-  mutable std::optional<DenseCore> core_;
+  mutable std::unique_ptr<const Configuration<T>> configuration_;  // these are not of every sample
+  mutable std::unique_ptr<const Cloud<T>> cloud_;
+  mutable std::unique_ptr<const SampledCloud> sampled_cloud_;
+  mutable std::unique_ptr<const DenseCore> core_;
 };
 
 }  // namespace cradle::tools

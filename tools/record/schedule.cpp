@@ -49,10 +49,13 @@ Schedule::Schedule(const Scene& scene) {
     of.push_back({row->samples ? Times(row->samples(scene), round) : Times(),
                   row->times ? Times(row->times(scene.output), round) : Times()});
   end_.push_back(scene.run.until.text, round);
+  for (const MeasurementTimes& each : of)
+    for (const Times* times : {&each.samples, &each.tables})
+      if (!times->empty()) all_.push_back(times);
+  all_.push_back(&end_);
   last_ = end_.back();
-  for_each([&](const Times& times) {
-    if (last_ < times.back()) last_ = times.back();
-  });
+  for (const Times* times : all_)
+    if (last_ < times->back()) last_ = times->back();
 }
 
 Due Schedule::due(std::size_t row, const Number& time) const {
@@ -61,20 +64,18 @@ Due Schedule::due(std::size_t row, const Number& time) const {
 }
 
 RunTime Schedule::meant(const Number& time) const {
-  std::optional<RunTime> found;
-  for_each([&](const Times& times) {
-    if (!found) found = times.find(time);
-  });
-  return found ? *found : RunTime(time);
+  for (const Times* times : all_)
+    if (std::optional<RunTime> found = times->find(time)) return *std::move(found);
+  return time;
 }
 
 std::optional<Number> Schedule::next(const std::optional<Number>& after) const {
   const Times* first = nullptr;
   std::size_t place = 0;
-  for_each([&](const Times& times) {
-    const std::size_t k = after ? times.first_after(*after) : 0;
-    if (k < times.size() && (first == nullptr || times[k] < (*first)[place])) first = &times, place = k;
-  });
+  for (const Times* times : all_) {
+    const std::size_t k = after ? times->first_after(*after) : 0;
+    if (k < times->size() && (first == nullptr || (*times)[k] < (*first)[place])) first = times, place = k;
+  }
   return first == nullptr ? std::nullopt : std::optional((*first)[place]);
 }
 

@@ -60,6 +60,8 @@ class Schedule {
  public:
   /// Throws Error for a scalar type that this build does not have.
   explicit Schedule(const Scene& scene);
+  Schedule(const Schedule&) = delete;
+  Schedule& operator=(const Schedule&) = delete;
 
   std::vector<MeasurementTimes> of;  // as measurement_rows() has them
 
@@ -76,14 +78,8 @@ class Schedule {
   std::vector<RequestedTime> requested(const Scene& scene, const Number& time) const;
 
  private:
-  template <class F> void for_each(F f) const {
-    for (const MeasurementTimes& each : of)
-      for (const Times* times : {&each.samples, &each.tables})
-        if (!times->empty()) f(*times);
-    f(end_);
-  }
-
   Times end_;
+  std::vector<const Times*> all_;  // those that are not empty
   Number last_;
 };
 

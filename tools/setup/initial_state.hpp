@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <concepts>
 #include <memory>
 #include <optional>
 
@@ -19,7 +20,11 @@
 
 namespace cradle::tools {
 
-template <Real T> T number(const Decimal& decimal) { return from_text<T>(decimal.text); }
+template <Real T> T number(const Decimal& decimal) {
+  if constexpr (std::same_as<T, double>)  // where it is one of its range, it is rounded already
+    if (decimal.value != 0 && std::isfinite(decimal.value)) return decimal.value;
+  return from_text<T>(decimal.text);
+}
 
 template <Real T> std::vector<T> numbers(const DecimalColumn& column) {
   std::vector<T> values;

@@ -1,5 +1,6 @@
-// Pictures: every kind is made from a small run, without a display, as PNG and as SVG, and twice with the same bytes.
-// The contents of a file decide which pictures it has: the names that the program prints are those of pictures.txt.
+// Pictures: every kind is made from a small run, without a display, as PNG and as SVG, and twice with the same bytes:
+// as SVG, which has every number that is drawn, and the first kind as PNG too. The contents of a file decide which
+// pictures it has: the names that the program prints are those of pictures.txt.
 
 #include "cradle/tests/tools/cases.hpp"
 
@@ -45,7 +46,8 @@ class Pictures : public ProgramTest, public testing::WithParamInterface<Kind> {
 TEST_P(Pictures, AreMadeWithoutDisplayAndTwiceTheSame) {
   shell(GetParam().command + " --quiet -o it.h5", GetParam().status);
   for (const std::string extension : {".png", ".svg"}) {
-    const auto once = plot("once", extension), again = plot("again", extension);
+    const bool twice = extension == ".svg" || GetParam().name == kinds().front().name;
+    const auto once = plot("once", extension), again = twice ? plot("again", extension) : once;
     for (std::size_t k = 0; k < once.size(); ++k) {
       const std::string picture = contents(folder / once[k]);
       EXPECT_EQ(picture.substr(0, 5), extension == ".png" ? "\x89PNG\r" : "<?xml") << once[k];

@@ -5,10 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <type_traits>
 
 #include "cradle/precision/bin_float.hpp"
-#include "cradle/tools/engines/in_precision.hpp"
 #include "cradle/tools/record/rows.hpp"
 #include "cradle/tools/support/table.hpp"
 
@@ -196,14 +194,10 @@ RunEnd end_of(Status status, bool order_lost) {
 double energy_digits(const Scene& scene, const AnyEngine& engine, const Moment& now) {
   const double at_start = now.energy_at_start().value, at_end = now.state().energy.value;
   const auto active = static_cast<double>(std::max<ParticleIndex>(engine.collided_particles(), 1));
-  const auto epsilon = in_precision<double>(scene, []<class T>(std::type_identity<T>) {
-    return to_double(T(std::numeric_limits<T>::epsilon()));  // 0 beyond the range of double
-  });
-  const double held = epsilon > 0 ? -std::log10(epsilon) : static_cast<double>(scene.run.digits);
   double error = 2 * std::sqrt(1 + static_cast<double>(engine.counts().collisions) / active);
   const bool velocities = scene.run.coordinates == Coordinates::absolute || particles_merge(scene);
   if (velocities && at_end > 0) error *= std::sqrt(std::max(1., at_start / at_end));
-  const double digits = held - std::log10(error);
+  const double digits = static_cast<double>(-std::log10(engine.epsilon())) - std::log10(error);
   const std::optional<double> off = at_end > 0 ? now.energy_deviation(at_end) : std::nullopt;
   return std::max(0., off ? std::min(digits, -std::log10(*off)) : digits);
 }

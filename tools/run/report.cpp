@@ -120,7 +120,7 @@ std::string apart(const Scene& scene) {
 }
 
 // The text for standard error; empty if everything was resolved.
-std::string account_warning(const ReportedAccount& account, const Scene& scene, bool rests) {
+std::string account_warning(const ReportedAccount& account, const Scene& scene) {
   const Run& run = scene.run;
   std::string text;
   if (account.order_lost > 0)
@@ -139,7 +139,7 @@ std::string account_warning(const ReportedAccount& account, const Scene& scene, 
         "in {} collisions three particles met at one time, within rounding: then the numbers do not say which pair "
         "collides first, and the left one is taken; {} (particles that rest on one another always meet so)\n",
         account.simultaneous, apart(scene));
-  if (const double grown = account.first_uncertain.gap; account.uncertain && !rests)
+  if (const double grown = account.first_uncertain.gap; account.uncertain)
     text += fmt::format(
         "collisions are certain up to t = {} only: there rounding, which has grown to {} {}, may have decided "
         "which one was next ({:.0f} digits of a length of 1 are left in {}); the collisions after it are those of a "
@@ -270,8 +270,9 @@ RunEnding::RunEnding(const Scene& scene, const AnyEngine& engine, const Moment& 
     account.first_uncertain = {now.time.meant, 0, *particle};
   }
   const bool rests = status == Status::exhausted && engine.particles() == 1 && !collapsing_floor(scene).empty() &&
-                     scene.run.coordinates == Coordinates::gaps;  // then no digits decide which collision is next
-  outcome.warning = account_warning(account, scene, rests);
+                     scene.run.coordinates == Coordinates::gaps;
+  if (rests) account.uncertain = false;  // no digits decide which collision is next
+  outcome.warning = account_warning(account, scene);
   if (status == Status::exhausted)
     outcome.warning += exhausted_warning(now.time.exact, outcome.collisions, scene, rests);
   attributes = {{"simultaneous_collisions", account.simultaneous},

@@ -89,18 +89,23 @@ std::string collapse_report(const ReportedCollapse& r, RunEnd end, std::uint64_t
   return text;
 }
 
-Group collapse_table(const ReportedCollapse& r) {
-  const double none = std::numeric_limits<double>::quiet_NaN();
-  return {"collapse",
-          {{"time", r.settled ? r.time.value : r.last_collision.value},
-           {"uncertainty", r.settled ? r.uncertainty.value : none},
-           {"last_collision", r.last_collision.value},
-           {"interval", r.interval.value},
-           {"ratio", r.settled ? r.ratio.value : none},
-           {"ratio_uncertainty", r.settled ? r.ratio_uncertainty.value : none},
-           {"gap", r.gap.value},
-           {"particle", static_cast<std::uint64_t>(r.particle)}},
-          {}};
+// With their decimals below /exact if the run's type is wider than double.
+std::vector<Group> collapse_tables(const ReportedCollapse& r) {
+  const auto if_known = [&](const Number& x) { return r.settled ? x : Number{none(), nullptr}; };
+  const std::pair<const char*, Number> numbers[] = {{"time", r.settled ? r.time : r.last_collision},
+                                                    {"uncertainty", if_known(r.uncertainty)},
+                                                    {"last_collision", r.last_collision},
+                                                    {"interval", r.interval},
+                                                    {"ratio", if_known(r.ratio)},
+                                                    {"ratio_uncertainty", if_known(r.ratio_uncertainty)},
+                                                    {"gap", r.gap}};
+  Group table{"collapse", {}, {}}, exact{std::string(exact_folder) + table.name, {}, {}};
+  for (const auto& [name, x] : numbers) {
+    table.attributes.emplace_back(name, x.value);
+    exact.attributes.emplace_back(name, x.text());
+  }
+  table.attributes.emplace_back("particle", static_cast<std::uint64_t>(r.particle));
+  return r.gap.exact ? std::vector{std::move(exact), std::move(table)} : std::vector{std::move(table)};
 }
 
 // Whether the scene asks for averages over many collisions, to which the order of single ones does not matter.
@@ -289,7 +294,7 @@ RunEnding::RunEnding(const Scene& scene, const AnyEngine& engine, const Moment& 
       floor == "walls.left" ? found->particle < 0 : floor == "walls.right" && found->particle + 1 == engine.particles();
   outcome.report = collapse_report(*found, outcome.end, outcome.collisions, on_floor ? floor : "");
   outcome.collapse_time = (found->settled ? found->time : found->last_collision).text();
-  collapse = collapse_table(*found);
+  collapse = collapse_tables(*found);
 }
 
 }  // namespace cradle::tools

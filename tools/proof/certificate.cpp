@@ -149,7 +149,9 @@ std::string attempts_text(const Certified& run) {
   std::string text;
   for (const Attempt& a : run.attempts)
     text += fmt::format("  {:.1f} s in {} and {}: {}\n", a.seconds, a.precision, a.digits,
-                        a.doubt.empty() ? "proved" : a.doubt);
+                        !a.doubt.empty() ? a.doubt
+                        : run.proved()   ? "proved"
+                                         : "proved up to where the run ended");
   return text;
 }
 

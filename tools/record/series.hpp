@@ -95,7 +95,7 @@ inline const std::vector<SeriesColumn>& series_columns() {
 inline Group heaviest_table() {
   return {"series/heaviest",
           {},
-          {{"mass", "m", "of the two heaviest clusters, the left and the right one", {}, 2},
+          {{"mass", "m", "of the two heaviest clusters, the left and the right one; NaN: fewer than two", {}, 2},
            {"x", "l", "their positions", {}, 2},
            {"v", "l/t", "their velocities", {}, 2},
            {"index", "1", "number at the start of the particle they go by, the same after passing", {}, 2, true}}};
@@ -112,7 +112,7 @@ inline std::vector<Group> cluster_series_tables() {
             {"merges", "1", "how often they have stuck", {}}}},
           {"series/heaviest",
            {},
-           {{"mass", "m", "of the two clusters, the left and the right one", {}, 2},
+           {{"mass", "m", "of the two clusters, the left and the right one; NaN: they have stuck", {}, 2},
             {"x", "l", "their positions", {}, 2},
             {"v", "l/t", "their velocities", {}, 2},
             {"index", "1", "0 or 1, which of the two at the start", {}, 2, true}}}};

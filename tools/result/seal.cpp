@@ -58,10 +58,12 @@ void check_seal(const std::string& path) {
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
   if (!std::filesystem::exists(status) && path.ends_with(".part"))
-    throw Error({path, 0, ""}, "no run in progress", "no such file",
-                fmt::format("give {}, which a run leaves when it is complete; it has a journal after two seconds",
-                            path.substr(0, path.size() - 5)),
-                Exit::io);
+    throw Error(
+        {path, 0, ""}, "no run in progress", "no such file",
+        fmt::format("give {}, which a run leaves when it is complete; if that is not there either, run the scene: "
+                    "there is a journal after its first two seconds",
+                    path.substr(0, path.size() - 5)),
+        Exit::io);
   if (!std::filesystem::exists(status))
     throw Error({path, 0, ""}, "no such file", "", "give a result file that cradle wrote", Exit::io);
   // Opening a FIFO would wait for ever.

@@ -5,10 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <type_traits>
 
 #include "cradle/precision/bin_float.hpp"
-#include "cradle/tools/engines/in_precision.hpp"
 #include "cradle/tools/record/rows.hpp"
 #include "cradle/tools/support/table.hpp"
 
@@ -91,18 +89,23 @@ std::string collapse_report(const ReportedCollapse& r, RunEnd end, std::uint64_t
   return text;
 }
 
-Group collapse_table(const ReportedCollapse& r) {
-  const double none = std::numeric_limits<double>::quiet_NaN();
-  return {"collapse",
-          {{"time", r.settled ? r.time.value : r.last_collision.value},
-           {"uncertainty", r.settled ? r.uncertainty.value : none},
-           {"last_collision", r.last_collision.value},
-           {"interval", r.interval.value},
-           {"ratio", r.settled ? r.ratio.value : none},
-           {"ratio_uncertainty", r.settled ? r.ratio_uncertainty.value : none},
-           {"gap", r.gap.value},
-           {"particle", static_cast<std::uint64_t>(r.particle)}},
-          {}};
+// With their decimals below /exact if the run's type is wider than double.
+std::vector<Group> collapse_tables(const ReportedCollapse& r) {
+  const auto if_known = [&](const Number& x) { return r.settled ? x : Number{none(), nullptr}; };
+  const std::pair<const char*, Number> numbers[] = {{"time", r.settled ? r.time : r.last_collision},
+                                                    {"uncertainty", if_known(r.uncertainty)},
+                                                    {"last_collision", r.last_collision},
+                                                    {"interval", r.interval},
+                                                    {"ratio", if_known(r.ratio)},
+                                                    {"ratio_uncertainty", if_known(r.ratio_uncertainty)},
+                                                    {"gap", r.gap}};
+  Group table{"collapse", {}, {}}, exact{std::string(exact_folder) + table.name, {}, {}};
+  for (const auto& [name, x] : numbers) {
+    table.attributes.emplace_back(name, x.value);
+    exact.attributes.emplace_back(name, x.text());
+  }
+  table.attributes.emplace_back("particle", static_cast<std::uint64_t>(r.particle));
+  return r.gap.exact ? std::vector{std::move(exact), std::move(table)} : std::vector{std::move(table)};
 }
 
 // Whether the scene asks for averages over many collisions, to which the order of single ones does not matter.
@@ -122,7 +125,7 @@ std::string apart(const Scene& scene) {
 }
 
 // The text for standard error; empty if everything was resolved.
-std::string account_warning(const ReportedAccount& account, const Scene& scene, bool rests) {
+std::string account_warning(const ReportedAccount& account, const Scene& scene) {
   const Run& run = scene.run;
   std::string text;
   if (account.order_lost > 0)
@@ -141,7 +144,7 @@ std::string account_warning(const ReportedAccount& account, const Scene& scene, 
         "in {} collisions three particles met at one time, within rounding: then the numbers do not say which pair "
         "collides first, and the left one is taken; {} (particles that rest on one another always meet so)\n",
         account.simultaneous, apart(scene));
-  if (const double grown = account.first_uncertain.gap; account.uncertain && !rests)
+  if (const double grown = account.first_uncertain.gap; account.uncertain)
     text += fmt::format(
         "collisions are certain up to t = {} only: there rounding, which has grown to {} {}, may have decided "
         "which one was next ({:.0f} digits of a length of 1 are left in {}); the collisions after it are those of a "
@@ -196,14 +199,10 @@ RunEnd end_of(Status status, bool order_lost) {
 double energy_digits(const Scene& scene, const AnyEngine& engine, const Moment& now) {
   const double at_start = now.energy_at_start().value, at_end = now.state().energy.value;
   const auto active = static_cast<double>(std::max<ParticleIndex>(engine.collided_particles(), 1));
-  const auto epsilon = in_precision<double>(scene, []<class T>(std::type_identity<T>) {
-    return to_double(T(std::numeric_limits<T>::epsilon()));  // 0 beyond the range of double
-  });
-  const double held = epsilon > 0 ? -std::log10(epsilon) : static_cast<double>(scene.run.digits);
   double error = 2 * std::sqrt(1 + static_cast<double>(engine.counts().collisions) / active);
   const bool velocities = scene.run.coordinates == Coordinates::absolute || particles_merge(scene);
   if (velocities && at_end > 0) error *= std::sqrt(std::max(1., at_start / at_end));
-  const double digits = held - std::log10(error);
+  const double digits = static_cast<double>(-std::log10(engine.epsilon())) - std::log10(error);
   const std::optional<double> off = at_end > 0 ? now.energy_deviation(at_end) : std::nullopt;
   return std::max(0., off ? std::min(digits, -std::log10(*off)) : digits);
 }
@@ -276,8 +275,9 @@ RunEnding::RunEnding(const Scene& scene, const AnyEngine& engine, const Moment& 
     account.first_uncertain = {now.time.meant, 0, *particle};
   }
   const bool rests = status == Status::exhausted && engine.particles() == 1 && !collapsing_floor(scene).empty() &&
-                     scene.run.coordinates == Coordinates::gaps;  // then no digits decide which collision is next
-  outcome.warning = account_warning(account, scene, rests);
+                     scene.run.coordinates == Coordinates::gaps;
+  if (rests) account.uncertain = false;  // no digits decide which collision is next
+  outcome.warning = account_warning(account, scene);
   if (status == Status::exhausted)
     outcome.warning += exhausted_warning(now.time.exact, outcome.collisions, scene, rests);
   attributes = {{"simultaneous_collisions", account.simultaneous},
@@ -294,7 +294,7 @@ RunEnding::RunEnding(const Scene& scene, const AnyEngine& engine, const Moment& 
       floor == "walls.left" ? found->particle < 0 : floor == "walls.right" && found->particle + 1 == engine.particles();
   outcome.report = collapse_report(*found, outcome.end, outcome.collisions, on_floor ? floor : "");
   outcome.collapse_time = (found->settled ? found->time : found->last_collision).text();
-  collapse = collapse_table(*found);
+  collapse = collapse_tables(*found);
 }
 
 }  // namespace cradle::tools

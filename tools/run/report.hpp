@@ -17,7 +17,7 @@ RunOutcome outcome_of(const Scene& scene, const AnyEngine& engine, const Moment&
 struct RunEnding {
   RunOutcome outcome;
   std::vector<Attribute> attributes;
-  std::optional<Group> collapse;
+  std::vector<Group> collapse;  // tables
 
   RunEnding(const Scene& scene, const AnyEngine& engine, const Moment& now, Status status);
 };

@@ -112,7 +112,7 @@ void EngineRun::end_with(Status status) {
   RunEnding ending(scene_, *engine_, now, status);
   put_rows();
   ending.outcome.summary = measurements_.finish(now, sink_);
-  if (ending.collapse) sink_.add(std::move(*ending.collapse));
+  for (Group& table : ending.collapse) sink_.add(std::move(table));
   ending.outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started_).count();
   std::vector<Attribute> attributes;
   if (sink_.for_file()) attributes = provenance(scene_, precision_name(scene_.run), end_row(ending.outcome.end).text);

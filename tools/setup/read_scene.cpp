@@ -96,7 +96,8 @@ void store_all(const Entries& entries, const std::string& scene_file, Scene& sce
     } else if (field.fallback == "required") {
       // If a key of another law is present, it explains the error better than the missing key.
       if (!field.when->decided_by.empty()) refuse_inapplicable_keys(entries, scene, field.when->decided_by);
-      throw Error({scene_file, 0, std::string(field.key)}, "missing", "", advice(field, scene));
+      throw Error({scene_file, 0, std::string(field.key)}, "missing", "",
+                  fmt::format("{} ({})", advice(field, scene), field.doc));
     } else {
       store_default(field, scene);
     }

@@ -18,7 +18,7 @@ class Pictures(small.Case):
 
     def test_are_those_of_the_program_to_the_byte(self):
         for make in small.ALL:
-            for extension in (".png", ".svg"):
+            for extension in (".png", ".svg") if make is small.shock else (".svg",):
                 made = cradle.plot.save(make(), "ours" + extension)
                 printed = program.call(["plot", make(), "-o", "theirs" + extension, "--force"]).out.split()
                 self.assertEqual([name.replace("ours", "theirs") for name in made], printed)

@@ -120,19 +120,19 @@ Group EnsembleState::spread_group(const Spread& spread, const Moments& total) co
 Group EnsembleState::replica_group() const {
   const std::vector<std::size_t> rows = table_.order();
   const auto of_rows = [&](auto of) { return numbers_of(rows, of); };
-  const auto whole = [&](auto of) {
-    return of_rows([&, of](std::size_t row) { return std::uint64_t{std::invoke(of, table_, row)}; });
-  };
   std::string outcomes;
   for (std::size_t k = 0; k < outcome_count; ++k)
     outcomes += fmt::format("{}{} {}", k == 0 ? "" : ", ", k, run_ends[k].text);
-  Group group{name("replicas"),
-              {},
-              {{"index", "1", "initial.replica of the run", whole(&ReplicaTable::index)},
-               {"outcome", "1", outcomes,
-                of_rows([&](std::size_t row) { return static_cast<std::uint64_t>(table_.outcome(row)); })},
-               {"collisions", "1", "collisions until the end", whole(&ReplicaTable::collisions)},
-               {"merges", "1", "merges until the end", whole(&ReplicaTable::merges)}}};
+  Group group{name("replicas"), {}, {}};
+  const auto add = [&](const char* column, const std::string& text, auto of) {
+    group.columns.push_back({column, "1", text, of_rows([&, of](std::size_t row) {
+                               return static_cast<std::uint64_t>(std::invoke(of, table_, row));
+                             })});
+  };
+  add("index", "initial.replica of the run", &ReplicaTable::index);
+  add("outcome", outcomes, &ReplicaTable::outcome);
+  add("collisions", "collisions until the end", &ReplicaTable::collisions);
+  add("merges", "merges until the end", &ReplicaTable::merges);
   for (std::size_t i = 0; i < layout_.numbers.size(); ++i) {
     group.columns.push_back(layout_.numbers[i]);
     group.columns.back().values = of_rows([&, i](std::size_t row) { return table_.number(row, i); });

@@ -148,7 +148,8 @@ std::string file_image(const Result& result) {
   bytes.reserve(length + seal_size);
   bytes.resize(length);
   if (H5Fget_file_image(file, bytes.data(), length) != size) throw hdf5::failure(no_room);
-  return bytes += seal_of(bytes);
+  bytes += seal_of(bytes);
+  return bytes;
 }
 
 void write_in_pieces(const Result& ends, const Pieces& pieces, const std::string& path) {

@@ -178,6 +178,9 @@ Cost expected_cost(const Scene& scene) {
   cost.particles = particles_at_end(scene);
   if (const auto of_rows = law_theory(scene).cost_of_rows; of_rows && equal_rows(scene)) of_rows(scene, cost);
   if (scene.initial.type == InitialType::ring || scene.initial.type == InitialType::gas) gas(scene, cost);
+  const std::string floor = collapsing_floor(scene);
+  cost.floor =
+      !floor.empty() && !(floor == "walls.left" ? scene.walls.left : scene.walls.right).rest_speed && !cost.collisions;
   const ScalarRow& type = scalar_row(scene.run.precision);
   const std::uint64_t digits = scene.run.digits;
   const bool gaps = scene.run.coordinates == Coordinates::gaps;
@@ -231,12 +234,10 @@ std::string expected_lines(const Scene& scene, const Cost& cost) {
   if (!cost.collisions) {
     const std::string floor = collapsing_floor(scene);
     const bool endless = (loses || !floor.empty()) && !particles_merge(scene) && !stops_at_collapse(scene);
-    const bool rests = (floor == "walls.left" ? scene.walls.left : scene.walls.right).rest_speed.has_value();
-    return fmt::format("collisions and time: there is no estimate for this scene{}{}\n",
-                       endless ? "; where particles collapse they may have no limit" : "",
-                       !endless || floor.empty() || rests
-                           ? ""
-                           : fmt::format(": with {}.rest_speed they come to rest there instead", floor));
+    return fmt::format(
+        "collisions and time: there is no estimate for this scene{}{}\n",
+        endless ? "; where particles collapse they may have no limit" : "",
+        endless && cost.floor ? fmt::format(": with {}.rest_speed they come to rest there instead", floor) : "");
   }
   const auto* after = stops_at_collapse(scene) ? "where the run stops"
                       : particles_merge(scene) ? "after which particles merge"

@@ -14,11 +14,12 @@ struct Cost {
   std::optional<double> collisions;  // none: not known for this initial state
   std::optional<double> collapse;    // of inelastic collapse, if before the end; collisions: until then
   std::optional<double> clustering;  // of a gas that cools, likewise
+  bool floor = false;                // on which particles may collapse, at a time that is not known
   double collisions_per_second = 0;
   double memory = 0;  // bytes
 
   /// Whether the pace of a run says how long the rest takes.
-  bool predictable() const { return !collapse && !clustering; }
+  bool predictable() const { return !collapse && !clustering && !floor; }
 };
 
 Cost expected_cost(const Scene& scene);

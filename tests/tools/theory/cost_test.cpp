@@ -50,6 +50,15 @@ TEST(ExpectedCollisions, OfElasticGasesAreCounted) {
   }
 }
 
+TEST(ExpectedCollisions, OnAFloorHaveNoPaceUnlessParticlesRestThere) {
+  const std::string ball = "law = { type = 'inelastic', restitution = 1 }\nrun.until = 30\n"
+                           "initial = { type = 'list', x = [1], v = [0] }\ngravity.acceleration = -1\n";
+  EXPECT_FALSE(expected_cost(scene_of(ball + "walls.left = { position = 0, restitution = 0.9 }")).predictable());
+  EXPECT_TRUE(expected_cost(scene_of(ball + "walls.left = { position = 0, restitution = 0.9, rest_speed = 1e-3 }"))
+                  .predictable());
+  EXPECT_TRUE(expected_cost(scene_of(ball + "walls.left.position = 0")).predictable());
+}
+
 TEST(ExpectedCollisions, OfACoolingGasEndWhereItClusters) {
   const std::string ring = "law = { type = 'inelastic', restitution = 0.9, cutoff = 1e-6 }\nrun.until = 1000\n"
                            "initial = { type = 'ring', particles = 10000, length = 10000 }\n";

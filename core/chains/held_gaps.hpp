@@ -147,7 +147,7 @@ template <Real T, class Masses> class HeldGaps {
   Line line_;
   HeldRange range_;
   CollisionMemory<T> memory_;
-  mutable std::optional<T> centre_;  // on a ring: centre of mass at the start, from when it is first needed
+  mutable std::optional<T> centre_;  // on a ring: centre of mass at the start, computed when it is first needed
   T fastest_{0};                     // closing speed at the start
   Anchor<T> left_, right_;
   Walls<T> walls_;

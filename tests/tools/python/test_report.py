@@ -155,7 +155,7 @@ class Reports(small.Case):
         self.assertEqual(distinct(list("aa"), points[:1] * 2), ["a, point 0", "a, point 1"])
 
     def test_are_the_same_twice_and_by_the_program(self):
-        for make in (small.shock, small.sweep, small.collapse):  # pictures of all kinds: plots_test.cpp
+        for make in small.ALL:
             text = small.page(make)
             call = program.call(["report", make(), "-o", "again.html", "--force"])
             self.assertEqual((call.out, call.messages), ("again.html\n", ""))

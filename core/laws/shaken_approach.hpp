@@ -11,7 +11,9 @@
 //   parabola   a quadratic equation for each arc, one after the other
 //   sine       w cannot grow faster than p + A omega^2, nor within a time d faster than p + s'' + A omega^3 d. So the
 //              gap stays open for as long as one that closes at that rate; such waits are made one after the other.
-//              They end at the first root, from before it: at once, or by a constant factor each if it is double.
+//              Once w surely stays positive, there is one root, and the series of g to the third order says where, but
+//              for its rest, which is below A omega^4 d^4/24: the search goes to where the gap is surely still open, or
+//              ends if the rest cannot show. At a double root waits shrink by a constant factor each.
 //
 // While the wall cannot reach the particle, since it is further than A from the wall's place, time is skipped. There is
 // no collision if none comes within a period after the particle has ceased to approach that place.
@@ -19,6 +21,7 @@
 // particle that is at the tip at the time of the jump, but for rounding, is not hit.
 // The search ends: a time so long that the type does not resolve arcs or teeth counts as that of the collision.
 
+#include <algorithm>
 #include <limits>
 #include <optional>
 
@@ -220,6 +223,26 @@ template <Real T> class ShakenApproach {
     const T speed = square_root(square);
     return is_positive(closing) ? T((gap + gap) / (closing + speed)) : T((speed - closing) / rate);
   }
+  // Where the series of a gap that closes at w, cut after the third order in the time d, is 0; how far from there the
+  // gap itself is 0 at most; and w then, but for a term of the third order. The rest of the gap is below f d^4/24.
+  // Nothing if they do not say that w stays above half of what it is.
+  struct NearRoot {
+    T in, off, closing;
+  };
+  static std::optional<NearRoot> near_root(const T& gap, const T& closing, const T& rate, const T& jerk, const T& f) {
+    const T inside = closing * closing + (rate + rate) * gap;
+    if (!(is_positive(closing) && is_positive(inside))) return {};
+    const auto speed_after = [&](const T& time) { return T(closing + time * (rate + time * jerk / T(2))); };
+    const T second = (gap + gap) / (closing + square_root(inside));
+    const T in = second - jerk * second * second * second / (T(6) * speed_after(second)), until = in + in / T(4);
+    const T braking = is_negative(rate) ? T(-rate) : T(0), more = is_negative(jerk) ? T(-jerk) : T(0);
+    const T lost = until * (braking + until * (more / T(2) + f * until / T(6)));
+    if (!(is_positive(in) && lost + lost < closing)) return {};
+    const T left = gap - in * (closing + in * (rate / T(2) + in * jerk / T(6)));
+    const T off = (magnitude(left) + f * in * in * in * in / T(24)) * T(2) / closing;
+    if (!(off < in / T(4))) return {};
+    return NearRoot{in, off, speed_after(in)};
+  }
   std::optional<WallMeeting<T>> on_sine() const {
     const T never = last_chance(), square = motion_.frequency() * motion_.frequency();
     const T greatest = pull_ + motion_.curving(), changing = motion_.curving() * motion_.frequency();
@@ -236,22 +259,26 @@ template <Real T> class ShakenApproach {
         const T there = at(when).state.closing;
         return WallMeeting<T>{when, is_positive(there) ? there : closing};
       }
-      const T open = is_positive(gap) ? gap : T(0);
+      const T open = is_positive(gap) ? gap : T(0), fourth = motion_.curving() * square;
       const auto surely = open_for(open, closing, greatest);
       if (!surely) return {};
-      // Within four times as long, or until the acceleration has changed its sign, if that is later.
-      const auto longer_within = [&](const T& within) {
-        const T less = rate + changing * within;
-        const T longer = less < greatest ? open_for(open, closing, less).value_or(within) : T(0);
-        return longer < within ? longer : within;
-      };
-      const T four = T(4) * *surely, turning = magnitude(rate) / changing;
-      T wait = longer_within(turning);  // mostly: both of the waits are then computed at once
-      if (turning < four) wait = longer_within(four);
-      if (wait < *surely) wait = *surely;
-      const auto free = out_of_reach(T(gap + place), T(closing - speed));
+      T wait = *surely;
+      if (const auto root = near_root(open, closing, rate, T(-square * speed), fourth)) {
+        const T when = time + root->in;
+        if (!(when < when + root->off) &&
+            fourth * root->in * root->in * root->in < T(std::numeric_limits<T>::epsilon()) * closing)
+          return WallMeeting<T>{when, root->closing};
+        wait = std::max(wait, T(root->in - root->off));
+      } else {
+        // Within four times as long or, if that is later, until the acceleration has changed its sign on the mean.
+        const T four = T(4) * *surely, turning = T(3) * magnitude(rate) / changing, within = std::max(four, turning);
+        const T less = rate + changing * within / T(3);  // a third of the change acts on the gap
+        if (less < greatest) wait = std::max(wait, std::min(within, open_for(open, closing, less).value_or(within)));
+      }
+      const Approach<T> to_place = straight(T(gap + place), T(closing - speed), pull_);
+      const auto free = out_of_reach(to_place.gap_after(wait), to_place.closing_after(wait));
       if (!free) return {};
-      if (wait < *free) wait = *free;
+      wait += *free;
       const T next = time + wait, rounding = roundings(RoundsToNearest<T> ? time : T(time + since_.high));
       if (!(time < next)) return unresolved(time, closing);
       if (is_positive(time) && is_positive(gap) && gap < motion_.curving() * rounding * rounding &&

@@ -227,7 +227,7 @@ const Field fields_before_particles[] = {
      "how the cut-off sets in: the restitution at a closing speed w is r + (1 - r) exp(-(w/cutoff)^this); without it, "
      "at once"},
     {"law.loss", law_of<&scene::Law::loss>, "m l^2/t^2", "required", "[0, inf)", &wet,
-     "energy E_loss that it takes to rupture a liquid bridge; pairs with less merge"},
+     "energy E_loss that it takes to rupture a liquid bridge; pairs with less merge; 0: all collisions are elastic"},
 
     {"initial.type", initial_type, "", "required", state_names, &always, "which particles there are at the start"},
     {"initial.left.particles", initial_of<&Initial::left, &scene::Row::particles>, "", "required", "[1, 1e15]",

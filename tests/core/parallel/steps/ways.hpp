@@ -142,6 +142,17 @@ inline std::vector<SegmentsAs> random_ways(Dice& dice) {
   return ways;
 }
 
+// Particles that fall on each other may collide for ever below the cut-off: the plain loop would take minutes.
+template <class Chain, class Law>
+bool has_few_collisions(const Scene<typename Chain::Scalar>& scene, const Law& law, double until) {
+  if (!scene->fall()) return true;
+  Simulation run(law, Chain(scene, 0));
+  run.head_for(until);
+  while (run.counts().collisions < 1'000'000)
+    if (!run.step()) return true;
+  return false;
+}
+
 template <class Chain> void expect_same_in_a_random_scene(Dice& dice) {
   using T = typename Chain::Scalar;
   constexpr bool unequal = !std::same_as<Chain, GapChain<T>>;
@@ -149,16 +160,16 @@ template <class Chain> void expect_same_in_a_random_scene(Dice& dice) {
   const Scene<T> scene = random_scene<T>(dice, unequal, duration);
   const std::vector<double> times{0.6 * duration, duration};
   const std::vector<SegmentsAs> ways = random_ways(dice);
-  // Not what collapses: the plain loop takes minutes for it.
   const double restitution = dice.one_of({1., 0.999, 0.95, 0.6, 0.4});
   const double cutoff = restitution > 0.99 ? dice.one_of({0., 1e-5, 0.1}) : dice.one_of({0.01, 0.1});
   if constexpr (unequal && std::same_as<T, double>)
     if (dice.below(3) == 0) {
       const SpeedDependent<T> law(std::max(restitution, 0.95), 0.05 + dice.uniform(), 0.1 + dice.uniform());
-      expect_same_in_steps<Chain>(scene, law, times, ways);
+      if (has_few_collisions<Chain>(scene, law, duration)) expect_same_in_steps<Chain>(scene, law, times, ways);
       return;
     }
-  expect_same_in_steps<Chain>(scene, Inelastic<T>(T(restitution), T(cutoff)), times, ways);
+  const Inelastic<T> law(T{restitution}, T{cutoff});
+  if (has_few_collisions<Chain>(scene, law, duration)) expect_same_in_steps<Chain>(scene, law, times, ways);
 }
 
 // As many as take four seconds, and so many at least; by hand as many as CRADLE_FUZZ_SECONDS says, from the scene

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <iterator>
 #include <numbers>
+#include <vector>
 
 #include "cradle/core/engine/collapse.hpp"
 #include "cradle/core/observe/correlations.hpp"
@@ -223,6 +224,16 @@ std::string end_line(const Scene& scene) {
                      unproved);
 }
 
+// As to_be_watched (core/chains/masses.hpp) says of so many particles that two threads could share them.
+bool watched_for_rounding(const Scene& scene, double particles) {
+  std::vector<double> masses;
+  for (const auto* some : {&scene.initial.masses, &scene.initial.random_masses, &scene.initial.m})
+    for (const Decimal& mass : *some) masses.push_back(mass.value);
+  if (masses.empty()) return false;
+  const auto [least, greatest] = std::ranges::minmax(masses);
+  return least < greatest && (particles <= 1000 || 10000 * least < greatest);
+}
+
 }  // namespace
 
 std::string about(double x, int digits) {
@@ -274,8 +285,8 @@ Threading expected_threading(const Scene& scene, const Cost& cost, unsigned thre
   const double efficiency = scene.output.events ? 0.65 : 0.75;
   const double segments = std::min<double>(threads, std::floor(cost.particles / gaps_per_thread));
   if (segments < 2) return alone(threads < 2 ? "one thread" : "few particles");
-  if (!merge && cost.particles <= 1000 && unequal_masses(scene))  // to_be_watched (core/chains/masses.hpp)
-    return alone("unequal masses of few particles are watched for rounding");
+  if (!merge && watched_for_rounding(scene, cost.particles))
+    return alone("unequal masses of few particles, or far apart, are watched for rounding");
   return {efficiency * segments, ""};
 }
 

@@ -227,8 +227,9 @@ std::string end_line(const Scene& scene) {
 // As to_be_watched (core/chains/masses.hpp) says of so many particles that two threads could share them.
 bool watched_for_rounding(const Scene& scene, double particles) {
   std::vector<double> masses;
-  for (const auto* some : {&scene.initial.masses, &scene.initial.random_masses, &scene.initial.m})
+  for (const auto* some : {&scene.initial.masses, &scene.initial.random_masses})
     for (const Decimal& mass : *some) masses.push_back(mass.value);
+  for (std::size_t i = 0; i < scene.initial.m.size(); ++i) masses.push_back(Decimal(scene.initial.m[i]).value);
   if (masses.empty()) return false;
   const auto [least, greatest] = std::ranges::minmax(masses);
   return least < greatest && (particles <= 1000 || 10000 * least < greatest);

@@ -10,6 +10,7 @@ export CRADLE_PROGRAM PYTHONDONTWRITEBYTECODE=1 PYTHONPATH="$here/../../../tools
 unset DISPLAY WAYLAND_DISPLAY
 for python in "${CRADLE_PYTHON:-}" python3 /usr/bin/python3; do
   if [[ -n $python ]] && "$python" -c "import h5py, matplotlib" >/dev/null 2>&1; then
+    export CRADLE_PYTHON=$python  # which the program then need not look for
     folder=$(mktemp -d)
     trap 'rm -rf "$folder"' EXIT
     cd "$folder"

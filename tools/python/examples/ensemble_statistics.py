@@ -15,7 +15,7 @@ print(f"{replicas} replicas of 400 particles; those that replicas.h5 has already
 
 # %%
 result = cradle.ensemble("fig4", replicas, output="replicas.h5", spread=["energy=0:60:60"],
-                         set={"initial.particles": 400, "law.restitution": 0.98, "run.until": 400})
+                         set={"initial.particles": 400, "law.restitution": 0.98, "run.until": 300})
 energy, time = result.series.energy, result.series.time
 last = len(time) - 1
 print(f"{replicas} replicas at t = {time[last]:.6g}: energy {energy.mean[last]:.6g} +- {energy.sem[last]:.2g} "

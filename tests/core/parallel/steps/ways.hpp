@@ -145,9 +145,10 @@ inline std::vector<SegmentsAs> random_ways(Dice& dice) {
 // Particles that fall on each other may collide for ever below the cut-off: the plain loop would take minutes.
 template <class Chain, class Law>
 bool has_few_collisions(const Scene<typename Chain::Scalar>& scene, const Law& law, double until) {
+  using T = typename Chain::Scalar;
   if (!scene->fall()) return true;
-  Simulation run(law, Chain(scene, 0));
-  run.head_for(until);
+  Simulation run(law, Chain(scene, T(0)));
+  run.head_for(T(until));
   while (run.counts().collisions < 1'000'000)
     if (!run.step()) return true;
   return false;

@@ -226,9 +226,10 @@ class Draws {
   std::int64_t count_ = 0;
 };
 
-// No minimum before the time found is below zero, and there the gap is zero: by at most 64 roundings (512 in
-// double-double, whose operations have errors of several units), in units u of the sizes that are added up and of the
-// time of the phase. A third of the gaps is moved so that it touches zero within a few roundings, or 1e-9 of its size.
+// No minimum before the time found is below zero, and there the gap is zero and closes at the speed found: by at most
+// 64 roundings (512 in double-double, whose operations have errors of several units), in units u of the sizes that are
+// added up and of the time of the phase. A third of the gaps is moved so that it touches zero within a few roundings,
+// or 1e-9 of its size.
 template <class T> void expect_never_late(int count) {
   Draws draw;
   const Reference u = exact(T(std::numeric_limits<T>::epsilon())) / 2;
@@ -270,6 +271,11 @@ template <class T> void expect_never_late(int count) {
       grazed += graze;
       ASSERT_GE(meeting->speed, T(0)) << k;
       ASSERT_LE(abs(wide.at(end)), tolerance) << k << ' ' << static_cast<double>(end);
+      const Reference then = exact(meeting->speed), bend = abs(wide.pull) + speed * c.frequency;
+      if (then * then > 1000 * bend * tolerance) {  // not a touch that rounding decides
+        ASSERT_LE(abs(then + wide.rate(end)), (RoundsToNearest<T> ? 64 : 512) * u * (at_end + bend * (c.since + end)))
+            << k << ' ' << static_cast<double>(then);
+      }
     } else {
       ++never;
     }

@@ -1,4 +1,4 @@
-"""A report with its pictures is made of every scene of the package, at the size of tests/tools/run/small_scenes.txt."""
+"""Pictures and a report are made of every scene of the package, at the size of tests/tools/run/small_scenes.txt."""
 import contextlib
 import multiprocessing
 import os
@@ -11,7 +11,7 @@ TABLE = os.path.join(os.path.dirname(__file__), "..", "run", "small_scenes.txt")
 
 
 def made(line):
-    """The command and what it printed, if a result or its report cannot be made; else nothing."""
+    """The command and what it printed, if a result, its pictures or its report cannot be made; else nothing."""
     status, *command = line.split()
     name = "-".join(command[:2]).replace("/", "-")
     run = subprocess.run([program.find(), *command, "--quiet", "--threads", "1", "-o", f"{name}.h5"],
@@ -19,17 +19,17 @@ def made(line):
     if run.returncode != int(status):
         return f"{line}: status {run.returncode}\n{run.stderr}"
     with open(f"{name}.err", "w+") as file, contextlib.redirect_stderr(file), contextlib.redirect_stdout(file):
-        ended = __main__.main(["report", f"{name}.h5", "-o", f"{name}.html"])  # what it throws is a failure, too
-        file.seek(0)
-        printed = file.read()
-    if ended or "Traceback" in printed:
-        return f"{line}: status {ended}\n{printed}"
-    with open(f"{name}.html", encoding="utf-8") as page:
-        return "" if "<figure" in page.read() else f"{line}: no picture"
+        for make, output in (("plot", f"{name}.png"), ("report", f"{name}.html")):
+            ended = __main__.main([make, f"{name}.h5", "-o", output])  # what it throws is a failure, too
+            file.seek(0)
+            printed = file.read()
+            if ended or "Traceback" in printed or not os.path.getsize(output):
+                return f"{line}: {make}, status {ended}\n{printed}"
+    return ""
 
 
 class Scenes(unittest.TestCase):
-    def test_all_have_a_report_with_pictures(self):
+    def test_all_have_pictures_and_a_report(self):
         with open(TABLE, encoding="utf-8") as file:
             lines = [line for line in file if not line.startswith("#")]
         with multiprocessing.Pool(2) as workers:

@@ -34,7 +34,7 @@ TEST_F(RunThreads, NeverChangeTheEvents) {
                             "walls.right.position=600 --set walls.right.temperature=0.1 --set run.until=300",
                     wet = "ring.toml --set run.until=10 --set output.snapshots=[]";
   for (const auto& [scene, precision] :
-       {std::pair(dry + "900", "double"), {dry + "550", "mpfr"}, {walls, "double"}, {wet, "double"}, {wet, "mpfr"}}) {
+       {std::pair(dry + "1200", "double"), {dry + "650", "mpfr"}, {walls, "double"}, {wet, "double"}, {wet, "mpfr"}}) {
     SCOPED_TRACE(scene + " in " + precision);
     const std::string run = "cradle run " + scene + " --set output.events=true --set run.precision=" + precision;
     expect_same_on_threads(run);

@@ -1,0 +1,172 @@
+// When random gaps to shaken walls close, grazing ones among them, against formulas of their own in 100 digits: never
+// later than they do, and at the speed that they have then.
+#include <gtest/gtest.h>
+
+#include <boost/math/constants/constants.hpp>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "cradle/core/laws/shaken_approach.hpp"
+#include "cradle/tests/core/fixtures.hpp"
+#include "cradle/tests/precision/every_scalar.hpp"
+
+namespace cradle::test::shaken_gaps_in_types_test {
+
+using Reference = bin_float;
+template <class T> Reference exact(const T& x) { return sum_of_doubles<Reference>(x); }
+
+// A gap by numbers of the type N, double or the reference: value and first two derivatives.
+template <class N> struct Curve {
+  Shape shape;
+  N gap, closing, pull, amplitude, frequency, phase, since;
+  N pi = boost::math::constants::pi<N>();
+
+  N turns(const N& t) const {
+    using std::floor;
+    const N y = (frequency * (since + t) + phase) / (2 * pi);
+    return y - floor(y + N(0.5));
+  }
+  N place(const N& y) const {
+    using std::abs, std::sin;
+    if (shape == Shape::sine) return amplitude * sin(2 * pi * y);
+    return shape == Shape::sawtooth ? N(2 * amplitude * y) : N(16 * amplitude * y * (N(0.5) - abs(y)));
+  }
+  N speed(const N& y) const {
+    using std::abs, std::cos;
+    if (shape == Shape::sine) return amplitude * frequency * cos(2 * pi * y);
+    const N slope = amplitude * frequency / pi;
+    return shape == Shape::sawtooth ? slope : N(4 * slope * (1 - 4 * abs(y)));
+  }
+  N acceleration(const N& y) const {
+    if (shape == Shape::sine) return -frequency * frequency * place(y);
+    if (shape == Shape::sawtooth) return N(0);
+    const N size = 8 * amplitude * frequency * frequency / (pi * pi);
+    return y < 0 ? size : N(-size);
+  }
+  N at(const N& t) const {
+    const N start = turns(N(0));
+    return gap - (closing - speed(start)) * t - pull * t * t / 2 - (place(turns(t)) - place(start));
+  }
+  N rate(const N& t) const { return -(closing - speed(turns(N(0)))) - pull * t - speed(turns(t)); }
+  N bend(const N& t) const { return -pull - acceleration(turns(t)); }
+};
+
+// The times of the local minima of a gap until `end`, in double: between two samples, and on teeth at their tips.
+std::vector<double> minima(const Curve<double>& c, double end) {
+  const double step = 2 * c.pi / c.frequency / 48;
+  std::vector<double> found;
+  if (c.shape == Shape::sawtooth) {
+    const double period = 2 * c.pi / c.frequency;
+    for (double t = (0.5 - c.turns(0)) * period; t < end; t += period) found.push_back(t);
+    return found;
+  }
+  for (double low = 0; low < end; low += step) {
+    double from = low, to = std::min(end, low + step);
+    if (!(c.rate(from) < 0 && c.rate(to) > 0)) continue;
+    for (int k = 0; k < 40; ++k) (c.rate((from + to) / 2) < 0 ? from : to) = (from + to) / 2;
+    found.push_back((from + to) / 2);
+  }
+  return found;
+}
+// The same in 100 digits, by Newton's steps; at the tip of a tooth the time of the jump.
+Reference sharpened(const Curve<Reference>& c, double minimum) {
+  Reference t(minimum);
+  if (c.shape == Shape::sawtooth) {
+    Reference y = c.turns(t);
+    if (y > 0) y -= 1;
+    return t - (y + Reference(0.5)) * 2 * c.pi / c.frequency;
+  }
+  for (int k = 0; k < 4; ++k)
+    if (const Reference bend = c.bend(t); bend > 0) t -= c.rate(t) / bend;
+  return t;
+}
+Reference at_minimum(const Curve<Reference>& c, const Reference& t) {
+  if (c.shape != Shape::sawtooth) return c.at(t);
+  return c.at(t) - (c.turns(t) < 0 ? 2 * c.amplitude : Reference(0));  // just before the jump
+}
+
+class Draws {
+ public:
+  double operator()() { return static_cast<double>(hash(count_++) >> 11) * 0x1p-53; }
+  double octaves(double low, double high) { return std::exp2(low + (high - low) * (*this)()); }
+
+ private:
+  std::int64_t count_ = 0;
+};
+
+// No minimum before the time found is below zero, and there the gap is zero and closes at the speed found: by at most
+// 64 roundings (512 in double-double, whose operations have errors of several units), in units u of the sizes that are
+// added up and of the time of the phase. A third of the gaps is moved so that it touches zero within a few roundings,
+// or 1e-9 of its size.
+template <class T> void expect_never_late(int count) {
+  Draws draw;
+  const Reference u = exact(T(std::numeric_limits<T>::epsilon())) / 2;
+  std::uint64_t met = 0, never = 0, grazing = 0, grazed = 0;
+  for (int k = 0; k < count; ++k) {
+    Curve<double> c{static_cast<Shape>(k % 3), 0,           0, 0, draw.octaves(-6, 2), draw.octaves(-2, 4),
+                    12 * draw() - 6,           100 * draw()};
+    const double speed = c.amplitude * c.frequency;
+    c.pull = draw() < 0.25 ? 0 : 2 * (draw() - 0.4) * speed * c.frequency * (draw() < 0.1 ? 0.01 : 1);
+    c.closing = (4 * draw() - 2) * speed;
+    c.gap = draw() < 0.3 ? 0 : c.amplitude * draw.octaves(-6, 2);
+    if (c.gap == 0) c.closing = -std::abs(c.closing);
+    Curve<Reference> wide{c.shape, c.gap, c.closing, c.pull, c.amplitude, c.frequency, c.phase, c.since};
+    T gap = exactly<T>(c.gap);
+    const double period = 2 * c.pi / c.frequency;
+    const bool graze = k % 9 > 5;
+    if (graze) {
+      std::optional<Reference> deepest;
+      for (const double t : minima(c, 4 * period)) {
+        const Reference here = at_minimum(wide, sharpened(wide, t));
+        if (!deepest || here < *deepest) deepest = here;
+      }
+      if (!deepest || !(wide.gap > *deepest)) continue;
+      const double off = (draw() - 0.5) * (draw() < 0.5 ? 16 * static_cast<double>(u) : 1e-9);
+      gap = from_text<T>(to_text(Reference((wide.gap - *deepest) * (1 + Reference(off)))));
+      wide.gap = exact(gap), c.gap = to_double(gap);
+      ++grazing;
+    }
+    const WallMotion<T> motion(c.shape, exactly<T>(c.amplitude), exactly<T>(c.frequency), exactly<T>(c.phase));
+    const ShakenApproach<T> approach(gap, exactly<T>(c.closing), exactly<T>(c.pull), splitter<T>(), motion,
+                                     motion.moment({exactly<T>(c.since), T(0)}));
+    const auto meeting = approach.meeting();
+    const Reference end = meeting ? exact(meeting->in) : Reference(40 * period);
+    const Reference sizes = wide.gap + c.amplitude + (abs(wide.closing) + speed) * end + abs(wide.pull) * end * end / 2;
+    const Reference at_end = abs(wide.closing) + speed + abs(wide.pull) * end;
+    const Reference tolerance = (RoundsToNearest<T> ? 64 : 512) * u * (sizes + at_end * (c.since + end));
+    if (meeting) {
+      ++met;
+      grazed += graze;
+      ASSERT_GE(meeting->speed, T(0)) << k;
+      ASSERT_LE(abs(wide.at(end)), tolerance) << k << ' ' << static_cast<double>(end);
+      const Reference then = exact(meeting->speed), bend = abs(wide.pull) + speed * c.frequency;
+      if (then * then > 1000 * bend * tolerance) {  // not a touch that rounding decides
+        ASSERT_LE(abs(then + wide.rate(end)), (RoundsToNearest<T> ? 64 : 512) * u * (at_end + bend * (c.since + end)))
+            << k << ' ' << static_cast<double>(then);
+      }
+    } else {
+      ++never;
+    }
+    for (const double t : minima(c, static_cast<double>(end) * (1 - 1e-12))) {
+      if (c.at(t) > 1e-6 * static_cast<double>(sizes)) continue;
+      const Reference exactly_then = sharpened(wide, t);
+      if (exactly_then < end) {
+        ASSERT_GE(at_minimum(wide, exactly_then), -tolerance) << k << " skipped at " << t;
+      }
+    }
+  }
+  EXPECT_GT(met, static_cast<std::uint64_t>(count) / 3);
+  EXPECT_GT(never, static_cast<std::uint64_t>(count) / 10);
+  EXPECT_GT(grazing, static_cast<std::uint64_t>(count) / 12);
+  EXPECT_GT(grazed, grazing / 4);
+  EXPECT_LT(grazed, grazing);
+}
+
+template <class T> class ShakenGapsIn : public testing::Test {};
+TYPED_TEST_SUITE(ShakenGapsIn, FixedTypes);
+TYPED_TEST(ShakenGapsIn, NoCollisionIsSkipped) { expect_never_late<TypeParam>(2000); }
+TYPED_TEST(ShakenGapsIn, SlowNoCollisionOfManyIsSkipped) { expect_never_late<TypeParam>(100000); }
+
+}  // namespace cradle::test::shaken_gaps_in_types_test

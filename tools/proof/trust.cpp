@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <limits>
+#include <utility>
 
 #include "cradle/core/base/real.hpp"
 #include "cradle/core/observe/trace.hpp"
@@ -36,22 +37,35 @@ struct TraceSample {
 
 class TraceObserver final : public RunObserver {
  public:
-  void collision(ParticleIndex left, ParticleIndex right, double) override { trace_.collision(left, right); }
+  void collision(ParticleIndex left, ParticleIndex right, double) override {
+    trace_.collision(left, right);
+    const std::pair now(left, right);
+    repeats_ = repeats_ || now == last_;
+    if (std::ranges::find(places_, now) == places_.end() && places_.size() < 3) places_.push_back(now);
+    last_ = now;
+  }
   void sample(const RunSample& sample) override {
     if (sample.of_series || sample.at_collision)
       samples.push_back({sample.time.value, trace_.digest(), sample.counts.collisions, sample.counts.merges,
                          sample.energy, sample.front_right, sample.at_collision});
   }
+  // Whether the sequence of collisions says more than their number: not if all are at one place, as those of a ball on
+  // a floor, or if two places take turns.
+  bool has_an_order() const { return places_.size() > 2 || (places_.size() == 2 && repeats_); }
   std::vector<TraceSample> samples;
 
  private:
   Trace trace_;
+  std::vector<std::pair<ParticleIndex, ParticleIndex>> places_;  // the first three
+  std::pair<ParticleIndex, ParticleIndex> last_{-1, -1};
+  bool repeats_ = false;  // a place was next to itself
 };
 
 struct Traced {
   Scene scene;
   RunOutcome outcome;
   std::vector<TraceSample> trace;
+  bool has_an_order;
   double seconds;
 };
 
@@ -71,7 +85,7 @@ Traced traced(const Scene& scene, const TrustOptions& options) {
   if (outcome.end == RunEnd::interrupted)
     throw Error({}, "interrupted", "", "run it again; nothing is kept of comparisons that did not finish",
                 status_of_signal(options.interrupt->signal()));
-  return {scene, std::move(outcome), std::move(observer.samples),
+  return {scene, std::move(outcome), std::move(observer.samples), observer.has_an_order(),
           std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count()};
 }
 
@@ -95,11 +109,15 @@ double shared_digits(const std::string& a, const Run& of_a, const std::string& b
   return digits > 0 ? std::min(digits, most) : 0.0;
 }
 
-// Number of leading samples that agree for good: a collision just at a sample's time may fall on either side of it.
-template <class Same> std::size_t agreeing(std::size_t samples, Same same) {
-  std::size_t end = samples;
-  while (end > 0 && !same(end - 1)) --end;
-  return end;
+// Number of samples up to the last one that agrees.
+template <class Same> std::size_t agreeing_for_good(std::size_t samples, Same same) {
+  while (samples > 0 && !same(samples - 1)) --samples;
+  return samples;
+}
+// Number of samples up to the first one, from `begin` on, that does not agree.
+template <class Same> std::size_t agreeing(std::size_t begin, std::size_t samples, Same same) {
+  while (begin < samples && same(begin)) ++begin;
+  return begin;
 }
 
 Trusted compare(const Traced& run, const Traced& reference) {
@@ -110,9 +128,13 @@ Trusted compare(const Traced& run, const Traced& reference) {
   trusted.seconds = run.seconds;
   trusted.outcome = end_row(run.outcome.end).text;
   const std::size_t samples = std::min(a.size(), b.size());
-  const std::size_t same = agreeing(samples, [&](std::size_t k) { return a[k].digest == b[k].digest; });
+  // A collision just at a sample's time may fall on either side of it: if later all collisions so far have had the same
+  // order, all is right. Numbers alone may be the same again by chance.
+  const auto in_order = [&](std::size_t k) { return a[k].digest == b[k].digest; };
+  const std::size_t same = run.has_an_order || reference.has_an_order ? agreeing_for_good(samples, in_order)
+                                                                      : agreeing(0, samples, in_order);
   const std::size_t counted = agreeing(
-      samples, [&](std::size_t k) { return a[k].collisions == b[k].collisions && a[k].merges == b[k].merges; });
+      same, samples, [&](std::size_t k) { return a[k].collisions == b[k].collisions && a[k].merges == b[k].merges; });
   if (same > 0) trusted.time = a[same - 1].time, trusted.collisions = a[same - 1].collisions;
   if (counted > 0) trusted.counts_time = a[counted - 1].time;
   trusted.to_end = same == a.size() && a.size() == b.size();
@@ -183,9 +205,8 @@ ProvedTrace proved_trace(const Scene& scene, const Traced& reference, const Trus
 }
 
 void compare_with_proof(Trusted& trusted, const Traced& run, const ProvedTrace& proof) {
-  const std::size_t samples = std::min(run.trace.size(), proof.samples.size());
-  std::size_t same = 0;
-  while (same < samples && run.trace[same].digest == proof.samples[same].digest) ++same;
+  const std::size_t same = agreeing(0, std::min(run.trace.size(), proof.samples.size()),
+                                    [&](std::size_t k) { return run.trace[k].digest == proof.samples[k].digest; });
   if (same > 0) trusted.proved_time = run.trace[same - 1].time;
   trusted.proved_to_end = proof.to_end && same == run.trace.size() && same == proof.samples.size();
 }

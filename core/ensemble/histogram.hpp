@@ -2,6 +2,7 @@
 // The distribution of the values of an entry over replicas: counts in fixed bins of equal width, and quantiles from
 // them. Counts are integers and add exactly, in any order. The error of a quantile is at most the width of a bin.
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -61,9 +62,10 @@ class Histograms {
     counts_ = std::move(counts);
   }
 
-  /// The value below which a share p of the replicas is, linearly interpolated within a bin; NaN if there are none or
-  /// if it is outside the bins.
-  double quantile(std::size_t entry, double p) const {
+  /// The value below which a share p of the replicas is, linearly interpolated within the part of a bin between the
+  /// least and the greatest value; NaN if there are none or if it is outside the bins.
+  double quantile(std::size_t entry, double p, double least = -std::numeric_limits<double>::infinity(),
+                  double greatest = std::numeric_limits<double>::infinity()) const {
     const auto of_entry = counts(entry);
     std::uint64_t all = 0;
     for (const std::uint64_t n : of_entry) all += n;
@@ -72,8 +74,10 @@ class Histograms {
     if (all == 0 || wanted < below) return std::numeric_limits<double>::quiet_NaN();
     for (std::size_t k = 0; k < bins_.bins; ++k) {
       const auto here = static_cast<double>(of_entry[k + 1]);
-      if (here > 0 && wanted <= below + here)
-        return bins_.edge(k) + (bins_.edge(k + 1) - bins_.edge(k)) * ((wanted - below) / here);
+      if (here > 0 && wanted <= below + here) {
+        const double from = std::max(bins_.edge(k), least), to = std::min(bins_.edge(k + 1), greatest);
+        return std::min(from + (to - from) * ((wanted - below) / here), to);
+      }
       below += here;
     }
     return std::numeric_limits<double>::quiet_NaN();

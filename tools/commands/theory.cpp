@@ -25,12 +25,12 @@ Exit theory(const TheoryArguments& options) {
                "walls and gravity\n");
     return Exit::done;
   }
-  fmt::print("{:<28}{:<18}{:<12}{:>12}  {}\n", "quantity", "equation", "form", "t", "value");
+  fmt::print("{:<31}{:<18}{:<12}{:>12}  {}\n", "quantity", "equation", "form", "t", "value");
   // Prints curves at a few times only; --csv writes all points.
   std::size_t shown = 0;
   for (const auto& p : table) {
     if (p.t && (p.form == "printed" || shown++ % 250 != 0)) continue;
-    fmt::print("{:<28}{:<18}{:<12}{:>12}  {:.15g}\n", p.quantity, p.equation, p.form,
+    fmt::print("{:<31}{:<18}{:<12}{:>12}  {:.15g}\n", p.quantity, p.equation, p.form,
                p.t ? fmt::format("{:.6g}", *p.t) : "", p.value);
   }
   fmt::print(

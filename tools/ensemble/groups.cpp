@@ -105,10 +105,10 @@ Group EnsembleState::spread_group(const Spread& spread, const Moments& total) co
   for (const int percent : {5, 25, 50, 75, 95}) {
     std::vector<double> quantiles;
     for (std::size_t entry = 0; entry < counts.entries(); ++entry) {
-      quantiles.push_back(counts.quantile(entry, percent / 100.0));  // within a bin: it may lie beyond all values
       const std::size_t i = quantity.offset + entry;
-      if (total.replicas > 0)
-        quantiles.back() = std::min(std::max(quantiles.back(), total.least[i]), total.greatest[i]);
+      quantiles.push_back(total.replicas > 0
+                              ? counts.quantile(entry, percent / 100.0, total.least[i], total.greatest[i])
+                              : counts.quantile(entry, percent / 100.0));
     }
     group.columns.push_back({fmt::format("quantile_{:02}", percent), quantity.unit,
                              fmt::format("{} % of the replicas are below, to the width of a bin", percent),

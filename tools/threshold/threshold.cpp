@@ -143,7 +143,7 @@ class Search {
     if (run.how == closed_form) return {run, true, "proved in closed form"};
     if (!options_.prove) return seen("");
     if (question_.what().type == Compare::pair) return seen("; no proof of clusters");
-    if (status_of_text(run.outcome) == Exit::collapse) return seen("; `certify` proves no collapse");
+    if (status_of_text(run.outcome) == Exit::collapse) return seen("; `certify` cannot prove a collapse");
     const Decimal value(run.value);
     Scene scene = question_.scene_at(value, false).value();
     if (precision_name(scene.run) != run.how) scene = question_.scene_at(value, true).value();

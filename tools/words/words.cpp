@@ -76,8 +76,8 @@ std::string word_text(const WordParticles& particles, const WordReport& report) 
     text += fmt::format("  at r = {}\n", range.at);
     text += fmt::format("    a period        multiplies speeds by {:.10g}, gaps by {:.10g}, times by {:.10g}\n",
                         range.lambda, range.gamma, range.gamma / range.lambda);
-    text +=
-        fmt::format("    stability       {}: a perturbation grows by {:.6g} in a period\n", range.stable, range.factor);
+    text += fmt::format("    stability       {}: a period multiplies a perturbation by {:.6g}\n", range.stable,
+                        range.factor);
     for (const auto& [from, to] : range.stable_ranges)
       text += fmt::format("    stable          for r from {:.10g} to {:.10g} (seen, not proved)\n", from, to);
     for (std::size_t i = 0; i < range.start.gaps.size(); ++i)
@@ -85,7 +85,7 @@ std::string word_text(const WordParticles& particles, const WordReport& report) 
                           range.start.gaps[i], range.start.speeds[i]);
     text += fmt::format("    collapse        at t = {}\n", range.start.collapse);
   }
-  text += fmt::format("  not proved: that there are no others, narrower than a step of {:.1g}, or outside\n",
+  text += fmt::format("  not proved: that the word exists for no other r, in a range narrower than {:.1g} or outside\n",
                       1.0 / (word_points + 1));
   return text;
 }

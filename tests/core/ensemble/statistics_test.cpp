@@ -269,6 +269,11 @@ TEST(FixedBins, QuantilesAreRightToABin) {
   for (const double x : {-1.0, 0.5}) low.add(std::span(&x, 1));
   EXPECT_TRUE(std::isnan(low.quantile(0, 0.4)));
   EXPECT_TRUE(std::isnan(Histograms(bins, 1).quantile(0, 0.5)));
+  // All in one bin: between the least and the greatest.
+  Histograms wide(FixedBins{0, 100, 2}, 1);
+  for (const double x : {1.0, 1.5, 2.0, 3.0}) wide.add(std::span(&x, 1));
+  EXPECT_EQ(wide.quantile(0, 0.5, 1, 3), 2);
+  EXPECT_EQ(wide.quantile(0, 0.05, 1, 3), 1.1);
 }
 
 }  // namespace cradle::test::statistics_test

@@ -79,7 +79,7 @@ def result(name, call, *arguments, **keys):
 # 200 particles with snapshots, profiles and events.
 shock = result("shock", cradle.run, "fig2", set=SHOCK | {"output.events": True})
 # 4 replicas of 40 particles, which collapse.
-ensemble = result("ensemble", cradle.ensemble, "fig2", 4, set={
+ensemble = result("ensemble", cradle.ensemble, "fig2", 4, spread=["energy=0:10:2000"], set={
     "initial.particles": 40, "law.restitution": 0.6, "law.cutoff": 0, "run.stop_gap": 1e-12, "run.until": 30,
     "output.snapshots": [], "output.series.points": 20, "output.profiles.times": [2, 4],
     "output.profiles.range": [-8, 8]})

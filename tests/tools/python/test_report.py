@@ -105,7 +105,10 @@ class Reports(small.Case):
                 for words in said:
                     self.assertIn(words, begin)
                 self.assertEqual(re.findall("(left|right) front at the end", page), fronts)
+                if "walls" in scene:  # which give energy, too
+                    self.assertNotIn("% lost", page)
         self.assertIn("1 particle in gaps", page)
+        self.assertIn("% lost in collisions", small.page(small.shock))
 
     def test_name_the_paper_where_it_is_cited(self):
         paper = "Figures, equations and sections are those of the paper"

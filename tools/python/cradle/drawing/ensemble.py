@@ -48,9 +48,16 @@ def draw_series(result, theory, units, panels):
     for ax, (name, label) in zip(axes, shown):
         band(ax, time, result.series[name], scale.get(name, 1), BLUE, lw=1.2)
         if name in spreads:
-            low, *between, high = (spreads[name][f"quantile_{k:02}"] / scale.get(name, 1) for k in (5, 25, 75, 95))
-            ax.fill_between(time, *between, color=ORANGE, alpha=0.35, lw=0, label="half of the replicas")
-            ax.plot(time, np.transpose([low, high]), ":", color=ORANGE, lw=1, label=["90 % of them", None])
+            # Bins that all replicas share, or half of them, say nothing of what is between.
+            width = np.diff(spreads[name]["edges"][:2])
+            known = spreads[name]["quantile_75"] - spreads[name]["quantile_25"] >= width
+            low, *between, high = (np.where(known, spreads[name][f"quantile_{k:02}"], np.nan) / scale.get(name, 1)
+                                   for k in (5, 25, 75, 95))
+            if known.any():
+                ax.fill_between(time, *between, color=ORANGE, alpha=0.35, lw=0, label="half of the replicas")
+                ax.plot(time, np.transpose([low, high]), ":", color=ORANGE, lw=1, label=["90 % of them", None])
+            else:
+                note(ax, "the bins are wider than the spread")
         ax.set_ylabel(units.energy_label() if name == "energy" else
                       label + (units.label("", r"$\,/\,l$") if scale.get(name) == units.x else ""))
     on_ring = result.word("initial", "type") == "ring"

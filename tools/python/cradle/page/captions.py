@@ -25,8 +25,8 @@ SEE = {
     "rates": "If the curves of different cut-offs have one slope, the cut-off decides how often particles collide.",
     "distributions": "The dotted line is that of gaps without any order; what lies above it is order between "
                      "neighbours.",
-    "particles": "Straight lines in the logarithmic panels are geometric series: each collision shrinks times, speeds "
-                 "and gaps by the same factor.",
+    "particles": "Straight lines in logarithmic panels are geometric series: there each collision shrinks times, "
+                 "speeds and gaps by the same factor.",
     "onset": "The part that collapses rises from none to all within a narrow range of particle numbers.",
     "blast": "Points on the lines agree with the exact solution for a continuous gas.",
     "domino": "Points on the line agree with the closed form.",

@@ -146,7 +146,7 @@ def law(result: Result) -> str:
         return ""
     restitution, cutoff = given(result, "law", "restitution"), given(result, "law", "cutoff")
     if restitution == 1:
-        return "; they bounce without losing energy"
+        return "; two that collide lose no energy"
     part = "a part of" if restitution is None else f"{number(restitution)} times"
     varied = " (about: it depends on the speed)" if "cutoff_exponent" in result.scene["law"] else ""
     slow = f", or without loss if that was below {number(cutoff)}&nbsp;l/t" if cutoff and not varied else ""

@@ -64,7 +64,9 @@ def ends(result: Result) -> Entries:
     yield "time reached", valued(number(time), "t"), ""
     yield "energy at the start", valued(number(first), "m l^2/t^2"), ""
     lost = last(series, "energy_lost")
-    share = f" · {100 * lost / (energy + lost):.4g} % lost in collisions" if lost and energy + lost > 0 else ""
+    alone = not {"walls", "gravity"} & result.scene.keys()  # else energy comes from elsewhere, too
+    share = "" if not lost else f" · {valued(number(lost), 'm l^2/t^2')} lost in collisions" if not alone else \
+        f" · {100 * lost / (energy + lost):.4g} % lost in collisions"
     digits = result.attributes.get("energy_digits")
     known = tag("estimated" if digits is not None and digits >= 1 else "unknown")
     about = "" if digits is None else f" about {digits:.0f} digits, from rounding and the number of collisions" \

@@ -165,6 +165,9 @@ def command_of(result: Result) -> list[str]:
         first = int(min(result.replicas["index"].values)) if len(result.replicas.get("index", ())) else 0
         words = ["ensemble", f"{name}.toml", "--replicas", str(about["replicas"])]
         words += ["--first", str(first)] * (first > 0)
+        for quantity, spread in result.table("ensemble/spread/series").items():
+            low, high = (repr(float(spread.attributes[end])).removesuffix(".0") for end in ("from", "to"))
+            words += ["--spread", f"{quantity}={low}:{high}:{spread.attributes['bins']}"]
     else:
         words = ["run", f"{name}.toml"]
     return [*words, "-o", output]

@@ -240,8 +240,7 @@ template <Real T> class ShakenApproach {
     if (!(is_positive(in) && lost + lost < closing)) return {};
     const T left = gap - in * (closing + in * (rate / T(2) + in * jerk / T(6)));
     const T off = (magnitude(left) + f * in * in * in * in / T(24)) * T(2) / closing;
-    if (!(off < in / T(4))) return {};
-    return NearRoot{in, off, speed_after(in)};
+    return off < in / T(4) ? std::optional(NearRoot{in, off, speed_after(in)}) : std::nullopt;
   }
   std::optional<WallMeeting<T>> on_sine() const {
     const T never = last_chance(), square = motion_.frequency() * motion_.frequency();
@@ -270,8 +269,9 @@ template <Real T> class ShakenApproach {
           return WallMeeting<T>{when, root->closing};
         wait = std::max(wait, T(root->in - root->off));
       } else {
-        // Within four times as long or, if that is later, until the acceleration has changed its sign on the mean.
-        const T four = T(4) * *surely, turning = T(3) * magnitude(rate) / changing, within = std::max(four, turning);
+        // Within four times as long or until the acceleration has changed its sign on the mean; from size and speed 0
+        // not quite until then, since rounding would have the sign.
+        const T times(*surely == T(0) ? 2 : 3), within = std::max(T(4) * *surely, times * magnitude(rate) / changing);
         const T less = rate + changing * within / T(3);  // a third of the change acts on the gap
         if (less < greatest) wait = std::max(wait, std::min(within, open_for(open, closing, less).value_or(within)));
       }

@@ -39,7 +39,7 @@ EnsembleStates EnsembleStore::empty_states() const {
 
 // ---- reading the result and the journals of all ranks
 
-void EnsembleStore::check_identity(const JournalHeader& there, const std::string& path) const {
+void EnsembleStore::check_identity(const JournalHeader& there, const std::string& path, const char* otherwise) const {
   if (there.identity == identity_) return;
   const auto& points = there.points;
   std::string found = points.size() == study_.points.size() ? "" : plural(points.size(), "ensemble");
@@ -48,13 +48,12 @@ void EnsembleStore::check_identity(const JournalHeader& there, const std::string
   if (found.empty() && there.spreads != study_.spreads)
     found = fmt::format("{}, here {}", spreads_text(there.spreads), spreads_text(study_.spreads));
   if (found.empty()) found = "another version of the program, or other listed particles";
-  throw Error({path, 0, ""}, "holds ensembles of something else", found,
-              "give another -o FILE, or --force to replace it");
+  throw Error({path, 0, ""}, "holds ensembles of something else", found, otherwise);
 }
 
-void EnsembleStore::load_result() {
+void EnsembleStore::load_result(const char* otherwise) {
   const Result result = read_result(file_);
-  check_identity(header_in(result, file_, "give another -o FILE, or --force to replace it"), file_);
+  check_identity(header_in(result, file_, otherwise), file_, otherwise);
   for (const auto& state : states_) state->read(result, file_);
   result_there_ = true;
 }

@@ -43,7 +43,8 @@ class EnsembleStore {
   /// Forced, they are not read: the study begins anew, and replaces them when it ends.
   std::string load(Force force = Force::no);
   /// Reads FILE alone, which must exist: to inspect or to merge it.
-  void load_result();
+  /// `otherwise`: what to do where it holds something else.
+  void load_result(const char* otherwise = another_file);
   /// Throws Error (Exit::bad_input) if `file` is there and holds more than replicas that are here too.
   void check_replaces(const std::string& file) const;
 
@@ -78,7 +79,8 @@ class EnsembleStore {
   std::string read_journal(const std::string& path, std::uint64_t& whole_bytes);
   void take(EnsembleStates& others, const std::string& from);
   bool replaces_another() const;
-  void check_identity(const JournalHeader& there, const std::string& path) const;
+  void check_identity(const JournalHeader& there, const std::string& path, const char* otherwise = another_file) const;
+  static constexpr const char* another_file = "give another -o FILE, or --force to replace it";
   JournalHeader header() const;
   std::vector<std::string> rank_journals() const;
   void keep_safe();

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
+#include <set>
 
 #include "cradle/tools/record/rows.hpp"
 #include "cradle/tools/result/growing_tables.hpp"
@@ -12,6 +14,9 @@ namespace cradle::tools {
 namespace {
 
 constexpr const char* below = "replicas/";
+constexpr const char* time_column = "time";
+
+double time_of(const Group& table) { return attribute<double>(table.attributes, "time", table.name); }
 
 bool is_kept(std::string_view table) {
   return std::ranges::any_of(measurement_rows(), [&](const MeasurementRow* row) {
@@ -50,9 +55,17 @@ ReplicaTables kept_tables(ReplicaIndex replica, const Result& run) {
 }
 
 std::vector<Group> joined_tables(const KeptReplicas& kept, const std::string& folder) {
+  std::map<std::string, std::set<double>> times;
+  for (const auto& [replica, tables] : kept)
+    for (const Group& table : tables) times[table.name].insert(time_of(table));
   GrowingTables joined;
   for (const auto& [replica, tables] : kept)
     for (Group table : tables) {
+      if (times[table.name].size() > 1) {
+        std::vector<double> time(table.columns.front().rows(), time_of(table));
+        table.columns.insert(table.columns.begin() + 1, {time_column, "t", "of this replica", std::move(time)});
+        table.attributes.clear();
+      }
       table.name.insert(0, folder);
       joined.add(std::move(table));
     }
@@ -75,6 +88,10 @@ KeptReplicas separated_tables(const Result& result, const std::string& folder, c
       while (last < replica->size() && (*replica)[last] == (*replica)[first]) ++last;
       Group one{table.name.substr(folder.size()), table.attributes, {}};
       for (const Column& column : table.columns) one.columns.push_back(rows_of(column, first, last));
+      if (one.columns.size() > 1 && one.columns[1].name == time_column) {
+        one.attributes.emplace_back("time", std::get<std::vector<double>>(one.columns[1].values).front());
+        one.columns.erase(one.columns.begin() + 1);
+      }
       kept[(*replica)[first]].push_back(std::move(one));
     }
   }

@@ -1,7 +1,8 @@
 // The snapshots and profiles of every replica, which an ensemble keeps if its scene requests it (output.every_replica).
 // A result file has one table for each time, "replicas/snapshots/0002": the rows of all replicas, one replica after the
 // other, as a run of it has them, behind a column with its number. Where a run has one row less (the gaps between n
-// particles), the last one of a replica is NaN.
+// particles), the last one of a replica is NaN. The last snapshot of a replica that ended before the end of the scene
+// has a time of its own: a table in which times differ has a second column with them.
 #pragma once
 
 #include <map>

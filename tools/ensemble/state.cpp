@@ -67,6 +67,8 @@ EnsembleState::EnsembleState(std::string group, Scene scene, const std::vector<S
       throw Error({"--spread", 0, ""}, "nothing of this name in the series or profiles", request.name,
                   fmt::format("choose one of {}", fmt::join(names, ", ")));
     }
+    if (std::ranges::any_of(spreads_, [&](const Spread& of) { return of.quantity.offset == found->offset; }))
+      throw Error({"--spread", 0, ""}, "a quantity that has bins already", request.name, "give each quantity once");
     spreads_.push_back({*found, Histograms(request.bins, found->size())});
   }
 }

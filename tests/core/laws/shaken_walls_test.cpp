@@ -142,6 +142,18 @@ TEST(ShakenWalls, ABallComesToRest) {
     }
 }
 
+// What a floor of restitution 0 has stopped while it falls faster leaves it at once, at whatever phase it was met.
+TEST(ShakenWalls, AParticleThatWasStoppedIsLeftByAWallThatFallsFaster) {
+  for (int k = -60; k < 60; ++k) {
+    const auto motion = std::make_shared<const WallMotion<double>>(Shape::sine, 1.5, 1.6, k / 10.);
+    auto run = falling(between(-1, list<double>({3}, {0.1}), wall(0, motion, 0, 0, 1000)), Inelastic<double>(1));
+    EXPECT_EQ(run.advance(30., [&](const Collision<double>& c) { ASSERT_GT(c.closing_speed, 0) << k; }),
+              Status::reached);
+    EXPECT_GT(run.counts().collisions, 5U) << k;
+    EXPECT_LT(run.counts().collisions, 10U) << k;
+  }
+}
+
 // A wall that presses again, after the phase at which it would let go, holds until its next turn: a sine that
 // accelerates by 2 p lets go at a twelfth of a turn, the parabola in the middle, the sawtooth at its tip.
 TEST(ShakenWalls, AWallHoldsUntilItLetsGo) {

@@ -38,6 +38,34 @@ TEST_F(Ensembles, KeepWhatEveryReplicaRecords) {
     EXPECT_FALSE(has(group.name, "replicas/snapshots") || has(group.name, "replicas/profiles")) << group.name;
 }
 
+// A replica that has collapsed has its last state in place of a snapshot, at a time of its own.
+TEST_F(Ensembles, KeepTheTimesOfLastStates) {
+  write("ring.toml", R"(
+law = {type = "inelastic", restitution = 0.03}
+initial = {type = "ring", particles = 3, perturbation = 0.4, seed = 7}
+run.until = 30
+output = {series = {points = 7}, snapshots = [1, 5], every_replica = true}
+)");
+  // The second call reads what the first has written.
+  for (const std::string replicas : {"2", "4"}) run("ensemble ring.toml --replicas " + replicas + " -o e.h5");
+  const Result all = read("e.h5");
+  const tools::Group& kept = *all.find("replicas/snapshots/0001");
+  EXPECT_EQ(tools::find_attribute<double>(kept.attributes, "time"), nullptr);
+  const auto replica = std::get<std::vector<std::uint64_t>>(column(kept, "replica").values);
+  const auto time = numbers(all, kept.name, "time");
+  for (std::uint64_t k = 0; k < 4; ++k) {
+    shell("cradle run ring.toml --quiet --force -o r.h5 --set initial.replica=" + std::to_string(k));
+    const Result alone = read("r.h5");
+    const double own = attribute<double>(alone.find("snapshots/0001")->attributes, "time", "");
+    for (std::size_t row = 0; row < replica.size(); ++row)
+      if (replica[row] == k) {
+        EXPECT_EQ(time[row], own) << k;
+      }
+  }
+  run("ensemble ring.toml --replicas 4 -o whole.h5");
+  shell("cmp e.h5 whole.h5", 0);
+}
+
 // The first kill leaves records of replicas, which the second call rewrites as statistics and tables of replicas.
 TEST_F(Ensembles, KeepEveryReplicaWhereTheyAreKilled) {
   write("shock.toml", std::string(shock) + "every_replica = true\n");

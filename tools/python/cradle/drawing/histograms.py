@@ -24,7 +24,7 @@ def counted(table):
     mean, error = (count["mean"], count["sem"]) if "mean" in count else (count, np.sqrt(count))
     low, high = np.asarray(table["low"]), np.asarray(table["high"])
     drawn = np.isfinite(high) & (low > 0)
-    return drawn, np.asarray(mean, float) * drawn, np.asarray(error, float)
+    return drawn, np.nan_to_num(np.asarray(mean, float)) * drawn, np.asarray(error, float)  # NaN: of no replica
 
 
 def variance(result):

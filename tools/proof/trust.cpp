@@ -49,8 +49,7 @@ class TraceObserver final : public RunObserver {
       samples.push_back({sample.time.value, trace_.digest(), sample.counts.collisions, sample.counts.merges,
                          sample.energy, sample.front_right, sample.at_collision});
   }
-  // Whether the sequence of collisions says more than their number: not if all are at one place, as those of a ball on
-  // a floor, or if two places take turns.
+  // Whether the sequence says more than the number of collisions: not at one place (a ball), nor where two take turns.
   bool has_an_order() const { return places_.size() > 2 || (places_.size() == 2 && repeats_); }
   std::vector<TraceSample> samples;
 

@@ -108,15 +108,16 @@ double shared_digits(const std::string& a, const Run& of_a, const std::string& b
   return digits > 0 ? std::min(digits, most) : 0.0;
 }
 
-// Number of samples up to the last one that agrees.
+// Number of samples up to the last one that agrees: a collision at a sample's time may fall on either side of it.
 template <class Same> std::size_t agreeing_for_good(std::size_t samples, Same same) {
   while (samples > 0 && !same(samples - 1)) --samples;
   return samples;
 }
-// Number of samples up to the first one, from `begin` on, that does not agree.
-template <class Same> std::size_t agreeing(std::size_t begin, std::size_t samples, Same same) {
-  while (begin < samples && same(begin)) ++begin;
-  return begin;
+// Number of samples before the first one that does not agree.
+template <class Same> std::size_t agreeing(std::size_t samples, Same same) {
+  std::size_t end = 0;
+  while (end < samples && same(end)) ++end;
+  return end;
 }
 
 Trusted compare(const Traced& run, const Traced& reference) {
@@ -127,13 +128,12 @@ Trusted compare(const Traced& run, const Traced& reference) {
   trusted.seconds = run.seconds;
   trusted.outcome = end_row(run.outcome.end).text;
   const std::size_t samples = std::min(a.size(), b.size());
-  // A collision just at a sample's time may fall on either side of it: if later all collisions so far have had the same
-  // order, all is right. Numbers alone may be the same again by chance.
+  // If later all collisions so far have the same order, that was right; numbers may be the same again by chance.
   const auto in_order = [&](std::size_t k) { return a[k].digest == b[k].digest; };
-  const std::size_t same = run.has_an_order || reference.has_an_order ? agreeing_for_good(samples, in_order)
-                                                                      : agreeing(0, samples, in_order);
+  const std::size_t same =
+      run.has_an_order || reference.has_an_order ? agreeing_for_good(samples, in_order) : agreeing(samples, in_order);
   const std::size_t counted = agreeing(
-      same, samples, [&](std::size_t k) { return a[k].collisions == b[k].collisions && a[k].merges == b[k].merges; });
+      samples, [&](std::size_t k) { return a[k].collisions == b[k].collisions && a[k].merges == b[k].merges; });
   if (same > 0) trusted.time = a[same - 1].time, trusted.collisions = a[same - 1].collisions;
   if (counted > 0) trusted.counts_time = a[counted - 1].time;
   trusted.to_end = same == a.size() && a.size() == b.size();
@@ -204,7 +204,7 @@ ProvedTrace proved_trace(const Scene& scene, const Traced& reference, const Trus
 }
 
 void compare_with_proof(Trusted& trusted, const Traced& run, const ProvedTrace& proof) {
-  const std::size_t same = agreeing(0, std::min(run.trace.size(), proof.samples.size()),
+  const std::size_t same = agreeing(std::min(run.trace.size(), proof.samples.size()),
                                     [&](std::size_t k) { return run.trace[k].digest == proof.samples[k].digest; });
   if (same > 0) trusted.proved_time = run.trace[same - 1].time;
   trusted.proved_to_end = proof.to_end && same == run.trace.size() && same == proof.samples.size();

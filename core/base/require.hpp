@@ -2,41 +2,42 @@
 // What is required of a caller's numbers, with messages that say what is wrong (what was found): what to do.
 
 #include <concepts>
+#include <cstdint>
 #include <initializer_list>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <variant>
 
 #include "cradle/core/base/real.hpp"
 
 namespace cradle {
 
-// A part of a message: text, or a number. Messages are made only where a condition does not hold, by one function, so
-// that a condition costs little code.
-struct MessagePart {
-  template <class Part> static MessagePart of(const Part& part) {
-    if constexpr (std::convertible_to<const Part&, std::string_view>)
-      return {.text = part};
-    else if constexpr (std::integral<Part>)
-      return {.integer = static_cast<long long>(part), .is_integer = true};
-    else
-      return {.number = to_double(part), .is_number = true};
-  }
-  std::string_view text = {};
-  long long integer = 0;
-  double number = 0;
-  bool is_integer = false, is_number = false;
-};
+// A part of a message: text, or a number.
+using MessagePart = std::variant<std::string_view, std::int64_t, std::uint64_t, double>;
+template <class Part> MessagePart message_part(const Part& part) {
+  if constexpr (std::convertible_to<const Part&, std::string_view>)
+    return std::string_view(part);
+  else if constexpr (std::signed_integral<Part>)
+    return std::int64_t{part};
+  else if constexpr (std::unsigned_integral<Part>)
+    return std::uint64_t{part};
+  else
+    return to_double(part);
+}
 
+// Throws std::invalid_argument with a message of these parts. All conditions share it, so that each costs little code.
 [[noreturn, gnu::cold, gnu::noinline]] inline void refuse(std::initializer_list<MessagePart> parts) {
   std::string message;
   for (const MessagePart& part : parts) {
-    if (part.is_integer)
-      message += std::to_string(part.integer);
-    else if (part.is_number)
-      message += std::to_string(part.number);
+    if (const auto* text = std::get_if<std::string_view>(&part))
+      message += *text;
+    else if (const auto* number = std::get_if<double>(&part))
+      message += std::to_string(*number);
+    else if (const auto* whole = std::get_if<std::int64_t>(&part))
+      message += std::to_string(*whole);
     else
-      message += part.text;
+      message += std::to_string(std::get<std::uint64_t>(part));
   }
   throw std::invalid_argument(message);
 }
@@ -44,7 +45,7 @@ struct MessagePart {
 // Throws std::invalid_argument, with a message of these parts, unless the condition holds.
 template <class... Parts> void require(bool holds, const Parts&... parts) {
   if (!holds) [[unlikely]]
-    refuse({MessagePart::of(parts)...});
+    refuse({message_part(parts)...});
 }
 
 // Throws std::invalid_argument unless the number is finite; `name` names it in parts, for example "mass ", 3.

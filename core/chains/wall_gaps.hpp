@@ -137,10 +137,20 @@ template <class Line> class WallGaps : public Gravity<typename Line::Scalar> {
   }
 
   // Whether rounding decides that a pulled gap meets its wall, or at which of two times. A floor at rest is always met.
+  // A particle that the wall has just stopped has its speed whatever the time: rounding moves only that time.
   void watch_meeting(Line& line, Slot s, const T& time) {
     if (!may_miss(line.particle(s))) return;
+    const T &gap = line.gaps[s].gap, &closing = line.closing(s);
+    const Pair<T> since = line.gaps.since_start(s);
+    T acceleration(0);
+    if (gap == T(0) && closing == T(0) && !above_pile(line.particle(s)))
+      acceleration = approach(line, s).acceleration_after(T(0), since);
     line.certainty.meeting(line.gaps, s, line.particle(s), time, [&](const T& less, const T& faster) {
-      return approach(line, s, T(line.gaps[s].gap - less), T(line.closing(s) + faster)).meeting();
+      if (acceleration == T(0)) return approach(line, s, T(gap - less), T(closing + faster)).meeting();
+      const T later = T(-faster / acceleration);
+      auto met = approach(line.particle(s), gap, closing, since + later).meeting();
+      if (met) met->in += later;
+      return met;
     });
   }
 

@@ -50,7 +50,7 @@ Sample<T> sample(const Run& run, const T& initial_energy, const T& time) {
               .walls = walls};
   if (s.particles > 0 && !run.on_ring()) {
     s.front_left = run.front_left(time);
-    s.front_right = run.front_right(time);
+    s.front_right = s.particles == 1 ? s.front_left : run.front_right(time);  // each is computed from its own end
   }
   return s;
 }

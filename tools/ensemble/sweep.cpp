@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "cradle/tools/ensemble/sweep_points.hpp"
+#include "cradle/tools/scene/source.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
 
 namespace cradle::tools {
@@ -93,6 +94,15 @@ template <class SceneAt> Study study_of(Scene scene, SceneAt scene_at) {
 Study sweep_of(const std::string& scene, const std::vector<std::string>& overrides, const Sweep& sweep) {
   Scene varied = read_scene(scene, overrides);
   varied.sweep = sweep;
+  const auto points = sweep_points(sweep);
+  for (const std::string& given : overrides) {
+    const std::string key = key_of(given);
+    const auto sets = [&](const SweepPoint& point) {
+      return std::ranges::find(point, key, &SweepPoint::value_type::first) != point.end();
+    };
+    if (std::ranges::all_of(points, sets))
+      throw Error({"--set", 0, key}, "every point of the sweep sets it too", given, "leave out one of the two");
+  }
   return study_of(std::move(varied), [&](const SweepPoint& point, const std::string&) {
     std::vector<std::string> all = overrides;
     for (const auto& [key, value] : point) all.push_back(key + "=" + value);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -123,6 +124,10 @@ std::vector<SweepPoint> sweep_points(const Sweep& sweep, double most) {
   if (points.empty())
     throw Error({"", 0, "--vary"}, "nothing to vary", "",
                 "give --vary KEY=FROM:TO:COUNT, or --point, or a scene with a table [sweep]");
+  for (const SweepPoint& point : points)
+    for (auto at = point.begin(); at != point.end(); ++at)
+      if (std::any_of(point.begin(), at, [&](const auto& before) { return before.first == at->first; }))
+        throw Error({"", 0, at->first}, "twice in a point of the sweep", point_label(point), "give one of the two");
   return points;
 }
 

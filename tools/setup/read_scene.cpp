@@ -22,7 +22,7 @@ namespace {
 // If the command line chooses how to sample the series, removes the choice of the file.
 void drop_replaced_series(Entries& entries, std::string_view assignment) {
   constexpr std::string_view series = "output.series.";
-  const auto key = assignment.substr(0, assignment.find_first_of("= \t"));
+  const auto key = key_of(assignment);
   if (!key.starts_with(series)) return;
   const auto way = key.substr(series.size());
   const bool of_range = way.starts_with("times.");

@@ -8,6 +8,7 @@
 
 #include "cradle/tools/scene/fields.hpp"
 #include "cradle/tools/scene/scene.hpp"
+#include "cradle/tools/scene/source.hpp"
 #include "cradle/tools/support/checksum.hpp"
 #include "cradle/tools/support/spelling.hpp"
 #include "cradle/tools/support/version.hpp"
@@ -42,6 +43,9 @@ ThresholdProblem::ThresholdProblem(std::string scene, std::vector<std::string> o
   low_ = Decimal(*low), high_ = Decimal(*high);
   if (low_ >= high_) throw wrong("no range", vary, "give the lower number first");
   choose_key(read_scene(scene_, overrides_));
+  for (const std::string& given : overrides_)
+    if (key_of(given) == key_)
+      throw Error({"--set", 0, key_}, "this is the key that is varied", given, "leave out one of the two");
   auto assigned = overrides_;
   assigned.push_back(assignment(low_));
   at_low_ = read_scene(scene_, assigned);

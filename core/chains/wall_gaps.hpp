@@ -60,7 +60,7 @@ template <class Line> class WallGaps : public Gravity<typename Line::Scalar> {
     auto& last = last_[line.particle(s) < 0 ? 0 : 1];
     if (!last || !(last->gap == gap && last->closing == closing && last->since.high == since.high &&
                    last->since.low == since.low && last->resting == resting()))
-      last = {gap, closing, since, resting(), approach(line, s, gap, closing).meeting()};
+      last = {gap, closing, since, resting(), approach(line.particle(s), gap, closing, since).meeting()};
     return last->meeting;
   }
   // Its local time.

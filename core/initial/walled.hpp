@@ -21,7 +21,7 @@ template <Real T> class Walled final : public Particles<T> {
   // `at_left`, `at_right`: what is known more precisely than as a difference of rounded numbers.
   Walled(std::shared_ptr<const Particles<T>> particles, std::optional<Wall<T>> left, std::optional<Wall<T>> right,
          const T& acceleration = T(0), std::optional<AtWall<T>> at_left = {}, std::optional<AtWall<T>> at_right = {})
-      : particles_(std::move(particles)), left_(std::move(left)), right_(std::move(right)),
+      : particles_(std::move(particles)), count_(particles_->count()), left_(std::move(left)), right_(std::move(right)),
         at_left_(std::move(at_left)), at_right_(std::move(at_right)), acceleration_(acceleration) {
     require_finite(acceleration_, "acceleration of the particles");
     require(!particles_->on_ring(), this->fall() ? "gravity" : "walls", " on a ring (circumference ",
@@ -43,7 +43,7 @@ template <Real T> class Walled final : public Particles<T> {
     if (this->fall()) potential_energy_ = -(acceleration_ * (total_mass() * particles_->centre_of_mass()));
   }
 
-  ParticleIndex count() const override { return particles_->count(); }
+  ParticleIndex count() const override { return count_; }
   T position(ParticleIndex particle) const override {
     if (!is_wall(particle)) return particles_->position(particle);
     const Wall<T>& wall = at(particle);
@@ -130,6 +130,7 @@ template <Real T> class Walled final : public Particles<T> {
   }
 
   std::shared_ptr<const Particles<T>> particles_;
+  ParticleIndex count_;  // of these, which collisions at a wall ask for
   std::optional<Wall<T>> left_, right_;
   std::optional<AtWall<T>> at_left_, at_right_;
   T acceleration_, potential_energy_{0};

@@ -259,16 +259,14 @@ template <Real T> class ShakenApproach {
         return WallMeeting<T>{when, is_positive(there) ? there : closing};
       }
       const T open = is_positive(gap) ? gap : T(0), fourth = motion_.curving() * square;
+      const auto root = near_root(open, closing, rate, T(-square * speed), fourth);
+      if (root && !(time + root->in < T(time + root->in) + root->off) &&
+          fourth * root->in * root->in * root->in < T(std::numeric_limits<T>::epsilon()) * closing)
+        return WallMeeting<T>{T(time + root->in), root->closing};
       const auto surely = open_for(open, closing, greatest);
       if (!surely) return {};
-      T wait = *surely;
-      if (const auto root = near_root(open, closing, rate, T(-square * speed), fourth)) {
-        const T when = time + root->in;
-        if (!(when < when + root->off) &&
-            fourth * root->in * root->in * root->in < T(std::numeric_limits<T>::epsilon()) * closing)
-          return WallMeeting<T>{when, root->closing};
-        wait = std::max(wait, T(root->in - root->off));
-      } else {
+      T wait = root ? std::max(*surely, T(root->in - root->off)) : *surely;
+      if (!root) {
         // Within four times as long or until the acceleration has changed its sign on the mean; from size and speed 0
         // not quite until then, since rounding would have the sign.
         const T times(*surely == T(0) ? 2 : 3), within = std::max(T(4) * *surely, times * magnitude(rate) / changing);

@@ -10,6 +10,7 @@
 
 #include <array>
 #include <cmath>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -122,15 +123,22 @@ template <Real T> class Circle {
   }
   const Pair<T>& full_turn() const { return full_turn_; }
 
-  UnitVector<T> at_turns(const T& y) const { return detail::at_turns(y, turn_, inverse_); }
+  UnitVector<T> at_turns(const T& y) const { return detail::at_turns(y, turn_, inverses()); }
   // cos z - 1 and sin z - z of an angle |z| <= pi/4, without cancellation.
   UnitVector<T> beyond_linear(const T& z) const {
     const T x = -z * z;
-    const UnitVector<T> of = detail::series(x, inverse_);
+    const UnitVector<T> of = detail::series(x, inverses());
     return {T(of.cos * x), T(of.sin * x * z)};
   }
 
  private:
+  const auto& inverses() const {
+    if constexpr (std::same_as<T, double>)  // as many, and the compiler unrolls the series
+      return detail::inverse_factorials;
+    else
+      return inverse_;
+  }
+
   Pair<T> full_turn_;
   T turn_;
   std::vector<T> inverse_;

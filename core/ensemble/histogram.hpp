@@ -23,8 +23,10 @@ struct FixedBins {
   std::size_t place(double x) const {
     if (x < from) return 0;
     if (!(x < to)) return bins + 1;
-    const auto bin = static_cast<std::size_t>((x - from) / (to - from) * static_cast<double>(bins));
-    return 1 + (bin < bins ? bin : bins - 1);  // the quotient may round up to 1
+    auto bin = std::min(static_cast<std::size_t>((x - from) / (to - from) * static_cast<double>(bins)), bins - 1);
+    while (x < edge(bin)) --bin;  // the quotient is rounded in another way than edges
+    while (!(x < edge(bin + 1))) ++bin;
+    return 1 + bin;
   }
   double edge(std::size_t k) const {
     return k == bins ? to : from + (to - from) * (static_cast<double>(k) / static_cast<double>(bins));

@@ -1,7 +1,7 @@
 #pragma once
 // The clusters of a gas whose particles merge: the two heaviest ones, the cloud around them, and the distribution of
-// masses. Only particles that have collided count; a particle that has not merged is a cluster of its own. Units of the
-// scene.
+// masses. Only particles in the active zone count, from the leftmost that has collided to the rightmost; one that has
+// not merged is a cluster of its own. Units of the scene.
 
 #include <cmath>
 #include <cstdint>

@@ -2,6 +2,8 @@
 // Numbers computed from a configuration: sums that check the run's ledger, and the statistics of its gaps.
 
 #include <algorithm>
+#include <cstddef>
+#include <vector>
 
 #include "cradle/core/chains/anchor.hpp"
 #include "cradle/core/chains/configuration.hpp"
@@ -58,15 +60,18 @@ template <Real T> T momentum_gained(const Configuration<T>& c, const Particles<T
   return gained.value();
 }
 
+// Of an even number the mean of the two in the middle.
+template <class T> T median(std::vector<T> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return values.size() % 2 == 1 ? *middle : T((*std::max_element(values.begin(), middle) + *middle) / T(2));
+}
+
 template <Real T> struct GapStatistics { T least{0}, median{0}; };
 
 // Statistics of the gaps of a configuration with at least two particles.
 template <Real T> GapStatistics<T> gap_statistics(const Configuration<T>& c) {
-  std::vector<T> gaps = c.gap;
-  const auto middle = gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / 2);
-  std::nth_element(gaps.begin(), middle, gaps.end());
-  const T median = *middle;
-  return {*std::min_element(gaps.begin(), gaps.end()), median};
+  return {*std::min_element(c.gap.begin(), c.gap.end()), median(c.gap)};
 }
 
 }  // namespace cradle

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "cradle/core/chains/configuration.hpp"
+#include "cradle/core/observe/configuration_statistics.hpp"
 
 namespace cradle {
 
@@ -73,12 +74,7 @@ template <Real T> DenseCore dense_core(const Configuration<T>& c) {
       if ((below += m) >= share * mass) return v;
     return velocities.back().first;
   };
-  double gap = none;
-  if (!gaps.empty()) {
-    const auto middle = gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / 2);
-    std::nth_element(gaps.begin(), middle, gaps.end());
-    gap = *middle;
-  }
+  const double gap = gaps.empty() ? none : median(std::move(gaps));
   return {mass, to_double(width), quantile(0.95) - quantile(0.05), gap};
 }
 

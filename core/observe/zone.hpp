@@ -21,6 +21,7 @@
 #include <vector>
 
 #include "cradle/core/base/state.hpp"
+#include "cradle/core/observe/configuration_statistics.hpp"
 #include "cradle/core/observe/profile.hpp"
 
 namespace cradle {
@@ -113,12 +114,6 @@ class ZoneAverage {
     std::vector<double> mean(bins_);
     for (std::size_t bin = 0; bin < bins_; ++bin) mean[bin] = detail::mean(total(sum, bin), total(weight, bin));
     return mean;
-  }
-
-  static double median(std::vector<double>& values) {
-    std::sort(values.begin(), values.end());
-    const std::size_t half = values.size() / 2;
-    return values.size() % 2 == 1 ? values[half] : (values[half - 1] + values[half]) / 2;
   }
 
   // The distance between the points at which u+ is 3/4 and 1/4 of u0, interpolated between the centres of bins.

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "cradle/tools/proof/certify.hpp"
 #include "cradle/tools/support/checksum.hpp"
@@ -99,9 +100,19 @@ std::string Certified::undecided() const {
 }
 
 std::string Certified::not_proved() const {
-  if (certificate.doubt || (outcome.end != RunEnd::collapsed && outcome.end != RunEnd::unproved)) return "";
-  return "that this is an inelastic collapse, and when it is complete; that is an estimate of the run, which ended at "
-         "the last collision that is proved";
+  std::vector<std::string> all;
+  if (const auto& open = certificate.open_samples; !open.empty()) {
+    constexpr std::size_t most = 6;
+    const std::span named(open.data(), std::min(open.size(), most));
+    all.push_back(fmt::format("what the run says of t = {}{}: collisions fall there, and whether just before or just "
+                              "after is open",
+                              fmt::join(named, ", "),
+                              open.size() > most ? fmt::format(" and {} more times", open.size() - most) : ""));
+  }
+  if (!certificate.doubt && (outcome.end == RunEnd::collapsed || outcome.end == RunEnd::unproved))
+    all.push_back("that this is an inelastic collapse, and when it is complete; that is an estimate of the run, which "
+                  "ended at the last collision that is proved");
+  return fmt::format("{}", fmt::join(all, "; "));
 }
 
 std::string certificate_text(const Certified& run) {

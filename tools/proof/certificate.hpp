@@ -73,7 +73,8 @@ struct Certificate {
   std::optional<ReportedDoubt> doubt;  // none: proved to the last sample
   std::uint64_t collisions = 0, in_doubles = 0;
   std::vector<CertainSample> samples;
-  std::vector<Group> snapshots;  // certificate/snapshots/NNNN and exact/snapshots/NNNN
+  std::vector<std::string> open_samples;  // times at which a collision falls, if it does so before or after them
+  std::vector<Group> snapshots;           // certificate/snapshots/NNNN and exact/snapshots/NNNN
 };
 
 /// Thrown where a proof ends before its run: there is no use in continuing.
@@ -90,6 +91,8 @@ class Certifier : public RunObserver {
   /// The first number of the run's tables that is not what is proved of it, within the run's rounding. Without one the
   /// tables have the proved numbers then.
   virtual std::optional<ReportedDoubt> disagreement(Result&) const { return {}; }
+
+  bool sample_is_open = false;  // on which side of the last sample a collision falls
 };
 
 /// In balls of so many digits: 31, or what MPFR is set to. Throws Error for what this build has not.

@@ -56,6 +56,7 @@ template <class M> class CertifierIn final : public Certifier {
   void sample(const RunSample& sample) override {
     if (certificate_.doubt) throw ProofEnds();
     check_all();
+    sample_is_open = false;
     bool of_series = sample.of_series;
     for (const RequestedTime& asked : sample.requested) {
       inspect(asked, sample, of_series && asked.of_series);
@@ -121,10 +122,7 @@ template <class M> class CertifierIn final : public Certifier {
 
   // Checks one collision and keeps its time and closing speed, which the file has, too.
   void one_collision(ParticleIndex left, ParticleIndex right, double time) {
-    if (const auto doubt = checker_.collision(left, right)) {
-      certificate_.doubt = reported(*doubt, time);
-      throw ProofEnds();
-    }
+    if (const auto doubt = checker_.collision(left, right)) end(reported(*doubt, time));
     meetings_.push_back({start_ + checker_.last().time, checker_.last().closing});
   }
 
@@ -133,12 +131,14 @@ template <class M> class CertifierIn final : public Certifier {
     const CertainState<N> state = sample.at_collision ? checker_.state_now() : checker_.state_at(time);
     if (state.doubt) {
       // A collision just at the time of a sample leaves that open, not what comes after.
-      if (!asked.last) return asked.of_snapshots ? snapshots_.skip() : void();
-      certificate_.doubt = reported(*state.doubt, sample.time.value);
-    } else {
-      compare(sample, asked, time, state, of_series);
+      if (!asked.last) {
+        sample_is_open = true;
+        certificate_.open_samples.push_back(asked.time.text);
+        return asked.of_snapshots ? snapshots_.skip() : void();
+      }
+      end(reported(*state.doubt, sample.time.value));
     }
-    if (certificate_.doubt) throw ProofEnds();
+    compare(sample, asked, time, state, of_series);
     add_sample(sample, asked, state);
     if (asked.of_snapshots) snapshots_.add(time, sample.time.value, certificate_.snapshots);
   }
@@ -207,7 +207,7 @@ template <class M> class CertifierIn final : public Certifier {
                   collisions * errors.wall_energy);
     }
     if (asked.of_snapshots) snapshots_.compare(sample.particles, time, run);
-    if (const auto& broken = run.broken()) certificate_.doubt = reported(*broken, sample.time.value);
+    if (const auto& broken = run.broken()) end(reported(*broken, sample.time.value));
   }
   static long double time_error(const RunErrors& errors, long double since, long double closing) {
     return closing > 0 ? 2 * (errors.place + since * errors.speed) / closing + errors.place
@@ -256,8 +256,10 @@ template <class M> class CertifierIn final : public Certifier {
     if (checking_.valid()) report(checking_.get());
   }
   void report(const std::optional<DoubtAt<N>>& doubt) {
-    if (!doubt) return;
-    certificate_.doubt = reported(doubt->doubt, checked_.times[doubt->number]);
+    if (doubt) end(reported(doubt->doubt, checked_.times[doubt->number]));
+  }
+  [[noreturn]] void end(ReportedDoubt&& doubt) {
+    certificate_.doubt = std::move(doubt);
     throw ProofEnds();
   }
 

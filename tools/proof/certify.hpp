@@ -48,7 +48,7 @@ struct Certified {
   bool proved() const { return undecided().empty(); }
   /// Where it is undecided, in words; empty: nowhere, up to the end of the run.
   std::string undecided() const;
-  /// What the run says of its end that no proof covers; empty: nothing.
+  /// What the run says of its samples and its end that no proof covers; empty: nothing.
   std::string not_proved() const;
 };
 

@@ -34,6 +34,7 @@ template <Enclosing N> class ProvedSnapshots {
     for (std::size_t j = 0; j < particles.index.size(); ++j)
       if (const auto cluster = checker_.cluster(particles.index[j]))
         run.count("particles of the snapshot in one cluster", at.emplace(*cluster, j).second ? 1 : 2, 1);
+    for (const auto& [cluster, j] : at) names_[cluster] = particles.index[j];
     std::vector<std::optional<ProvedParticle>> rows(particles.index.size());
     checker_.for_each(time, [&](ParticleIndex particle, const N& m, const N& x, const N& v) {
       const auto found = at.find(particle);
@@ -60,12 +61,13 @@ template <Enclosing N> class ProvedSnapshots {
     std::vector<std::uint64_t> index;
     Bounds places, velocities, gaps, closing_speeds;
     checker_.for_each(time, [&](ParticleIndex particle, const N&, const N& x, const N& v) {
-      index.push_back(static_cast<std::uint64_t>(particle));
+      const auto name = names_.find(particle);
+      index.push_back(static_cast<std::uint64_t>(name == names_.end() ? particle : name->second));
       places.add(enclosed(x)), velocities.add(enclosed(v));
     });
     for (const auto& [gap, closing] : between_) gaps.add(gap), closing_speeds.add(closing);
     for (Group* group : {&doubles, &exact}) {
-      group->columns.push_back({"index", "1", "of a particle of the cluster, at the start", index});
+      group->columns.push_back({"index", "1", "number at the start; of a cluster as in the run", index});
       group->columns.back().names = true;
     }
     places.put(doubles, exact, "x", "l", "position");
@@ -74,7 +76,7 @@ template <Enclosing N> class ProvedSnapshots {
     closing_speeds.put(doubles, exact, "closing_speed", "l/t", "closing speed of these two");
     to.push_back(std::move(doubles));
     to.push_back(std::move(exact));
-    between_.clear();
+    between_.clear(), names_.clear();
     skip();
   }
   /// The run has this snapshot, the proof does not.
@@ -130,8 +132,9 @@ template <Enclosing N> class ProvedSnapshots {
   const cradle::Particles<N>& particles_;
   const Checker<N>& checker_;
   ProvedTables<N>& tables_;
-  std::vector<std::pair<Enclosed, Enclosed>> between_;  // gaps and closing speeds of this snapshot
-  std::size_t number_ = 0;                              // of this snapshot
+  std::vector<std::pair<Enclosed, Enclosed>> between_;      // gaps and closing speeds of this snapshot
+  std::unordered_map<ParticleIndex, ParticleIndex> names_;  // of its clusters in the run
+  std::size_t number_ = 0;                                  // of this snapshot
 };
 
 }  // namespace cradle::tools

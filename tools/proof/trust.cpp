@@ -32,7 +32,7 @@ struct TraceSample {
   std::uint64_t digest = 0;  // of the collisions so far, see core/observe/trace.hpp
   std::uint64_t collisions = 0, merges = 0;
   std::string energy, front;
-  bool at_collision = false;
+  bool at_collision = false, open = false;  // open: on which side of it a collision falls, in a proof
 };
 
 class TraceObserver final : public RunObserver {
@@ -104,8 +104,7 @@ double shared_digits(const std::string& a, const Run& of_a, const std::string& b
   const bin_float size = std::max({magnitude(x), magnitude(y), magnitude(value(scale, of_b))});
   const bin_float apart = magnitude(bin_float(x - y));
   if (apart == 0) return most;
-  const auto digits = -static_cast<double>(log10(bin_float(apart / size)));
-  return digits > 0 ? std::min(digits, most) : 0.0;
+  return std::clamp(-static_cast<double>(log10(bin_float(apart / size))), 0.0, most);
 }
 
 // Number of samples up to the last one that agrees: a collision at a sample's time may fall on either side of it.
@@ -167,9 +166,8 @@ struct ProvedTrace {
 
 class TracedCertifier final : public Certifier {
  public:
-  TracedCertifier(std::unique_ptr<Certifier> proof, std::vector<TraceSample>& samples)
-      : proof_(std::move(proof)), samples_(samples) {
-    samples_.clear();
+  TracedCertifier(std::unique_ptr<Certifier> proof, ProvedTrace& proved) : proof_(std::move(proof)), proved_(proved) {
+    proved_ = {};
   }
   void collision(ParticleIndex left, ParticleIndex right, double time) override {
     proof_->collision(left, right, time);
@@ -178,36 +176,38 @@ class TracedCertifier final : public Certifier {
   void sample(const RunSample& sample) override {
     proof_->sample(sample);
     trace_.sample(sample);
-    if (samples_.size() < trace_.samples.size()) samples_.push_back(trace_.samples.back());
+    if (proved_.samples.size() < trace_.samples.size())
+      proved_.samples.push_back(trace_.samples.back()), proved_.samples.back().open = proof_->sample_is_open;
   }
   Certificate certificate() const override { return proof_->certificate(); }
 
  private:
   std::unique_ptr<Certifier> proof_;
   TraceObserver trace_;
-  std::vector<TraceSample>& samples_;
+  ProvedTrace& proved_;
 };
 
 // In long runs with no more digits than the reference has: more would take longer than all the others together.
 ProvedTrace proved_trace(const Scene& scene, const Traced& reference, const TrustOptions& options) {
-  constexpr std::uint64_t few = 1'000'000;
-  const unsigned most = reference.outcome.collisions < few ? 1000 : digits_of(reference.scene.run);
+  const unsigned most = reference.outcome.collisions < 1'000'000 ? 1000 : digits_of(reference.scene.run);
   ProvedTrace proof;
   if (not_provable(scene)) return proof;
   CertifyOptions how{rising_digits(), options.progress, options.interrupt, {}};
   std::erase_if(how.digits, [&](unsigned digits) { return digits > std::max(most, 31U); });
   how.make = [&](const Scene& of, unsigned digits) {
-    return std::make_unique<TracedCertifier>(certifier(of, digits), proof.samples);
+    return std::make_unique<TracedCertifier>(certifier(of, digits), proof);
   };
   proof.to_end = certify(at_digits(scene, 16, Coordinates::gaps), how).proved();
   return proof;
 }
 
 void compare_with_proof(Trusted& trusted, const Traced& run, const ProvedTrace& proof) {
-  const std::size_t same = agreeing(std::min(run.trace.size(), proof.samples.size()),
-                                    [&](std::size_t k) { return run.trace[k].digest == proof.samples[k].digest; });
-  if (same > 0) trusted.proved_time = run.trace[same - 1].time;
+  std::size_t same = agreeing(std::min(run.trace.size(), proof.samples.size()), [&](std::size_t k) {
+    return proof.samples[k].open || run.trace[k].digest == proof.samples[k].digest;
+  });
   trusted.proved_to_end = proof.to_end && same == run.trace.size() && same == proof.samples.size();
+  while (same > 0 && proof.samples[same - 1].open) --same;
+  if (same > 0) trusted.proved_time = run.trace[same - 1].time;
 }
 
 }  // namespace

@@ -9,15 +9,16 @@ namespace cradle::tools {
 
 namespace {
 
-void add_curves(Predictions& table, const theory::InelasticShock<double>& shock, double until) {
+void add_curves(Predictions& table, const theory::InelasticShock<double>& shock, double until, double through,
+                bool lattice) {
   // The curve of the front ends when it has turned around; (7) continues a little further, where it departs from the
   // run.
-  const double end = std::min(until, 2 * theory::turnover_time(shock).value_or(until));
+  const double end = std::min({until, through, 2 * theory::turnover_time(shock).value_or(until)});
   for (int k = 0; k <= curve_points; ++k) {
     const double t = curve_time(end, k);
     table.point("front_position", "(5)", "continuous", t, theory::front_position(shock, t));
     table.point("front_velocity", "(4)", "continuous", t, theory::front_velocity(shock, t));
-    table.point("front_position", "x_n, t_n", "discrete", t, theory::front_position_discrete(shock, t));
+    if (lattice) table.point("front_position", "x_n, t_n", "discrete", t, theory::front_position_discrete(shock, t));
     if (k > 0) {
       const double slope = theory::mean_velocity_slope(shock, t);
       table.point("interaction_density", "before (6)", "continuous", t, theory::interaction_density(shock, t));
@@ -49,15 +50,18 @@ void predict_inelastic(const Scene& scene, Predictions& table) {
                                              .spacing = scene.initial.spacing.value,
                                              .particles = scene.initial.particles};
   table.number("initial_energy", "N m u0^2/2", "continuous", theory::initial_energy(shock));
-  table.number("turnover_time", "(4) = 0", "continuous", theory::turnover_time(shock));
-  table.number("maximal_front", "x_max", "continuous", theory::maximal_front(shock));
-  if (const auto turned = theory::turnover_collision(shock)) {
-    table.number("turnover_time", "t_n", "discrete", turned->time);
-    table.number("maximal_front", "max(x_n - x_0)", "discrete", turned->position - shock.origin());
+  const bool lattice = scene.initial.positions == Positions::lattice;
+  const double through = theory::front_collision(shock, scene.initial.particles / 2).time;  // the other row
+  if (const auto turned = theory::turnover_collision(shock); turned && turned->time <= through) {
+    table.time("turnover_time", "(4) = 0", "continuous", theory::turnover_time(shock));
+    table.number("maximal_front", "x_max", "continuous", theory::maximal_front(shock));
+    if (lattice) table.time("turnover_time", "t_n", "discrete", turned->time);
+    if (lattice) table.number("maximal_front", "max(x_n - x_0)", "discrete", turned->position - shock.origin());
   }
   table.number("mean_velocity_slope", "(6), line 2", "continuous", theory::mean_velocity_slope_early(shock));
-  if (eps < 1) table.number("collapse_onset_time", "N_c/(2 u0)", "continuous", theory::collapse_onset_time(shock));
-  add_curves(table, shock, scene.run.until.value - scene.run.start.value);
+  if (const auto onset = theory::collapse_onset_time(shock); onset && *onset <= through)
+    table.time("collapse_onset_time", "N_c/(2 u0)", "continuous", onset);
+  add_curves(table, shock, scene.run.until.value - scene.run.start.value, through, lattice);
 }
 
 }  // namespace cradle::tools

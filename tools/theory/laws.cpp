@@ -37,7 +37,7 @@ const LawTheory& law_theory(const Scene& scene) {
 }
 
 std::vector<Prediction> predictions(const Scene& scene) {
-  Predictions table;
+  Predictions table(scene.run.start.value);
   if (scene.walls.any() || scene.gravity.acts()) return {};  // the paper has none
   if (const auto predict = law_theory(scene).predict) predict(scene, table);
   if (scene.initial.type == InitialType::ring && !unequal_masses(scene)) predict_cooling(scene, table);

@@ -1,5 +1,5 @@
 // The paper's predictions for a scene as one table, for `cradle theory` and for the curves in pictures, and those of
-// each law. Times are counted from run.start.
+// each law. They end where a front has passed through the other row.
 #pragma once
 
 #include <optional>
@@ -16,11 +16,11 @@ struct Prediction {
   std::string quantity;     // front_position, energy, ...
   std::string equation;     // in the paper: "(5)"
   std::string form;         // continuous, discrete; printed: the paper's own form if it has a misprint
-  std::optional<double> t;  // for curves
+  std::optional<double> t;  // for curves: a time of the scene
   double value;
 };
 
-/// Curves and numbers that apply to the scene; times are counted from run.start. Empty if the paper predicts nothing.
+/// Curves and numbers that apply to the scene; times are those of the scene. Empty if the paper predicts nothing.
 std::vector<Prediction> predictions(const Scene& scene);
 
 /// Which of the paper's formulas for this scene's law have misprints, in words; empty if none.
@@ -29,20 +29,26 @@ std::string misprints(const Scene& scene);
 /// Long-format CSV: quantity,equation,form,t,value; t empty for single numbers.
 std::string predictions_csv(const std::vector<Prediction>& table);
 
-/// A growing table of predictions.
+/// A growing table of predictions; times are given from run.start on.
 class Predictions {
  public:
+  explicit Predictions(double start) : start_(start) {}
   /// Adds a single number; does nothing if there is no value.
   void number(const char* quantity, const char* equation, const char* form, std::optional<double> value) {
     if (value) rows_.push_back({quantity, equation, form, std::nullopt, *value});
   }
+  /// The same for a time.
+  void time(const char* quantity, const char* equation, const char* form, std::optional<double> value) {
+    if (value) rows_.push_back({quantity, equation, form, std::nullopt, start_ + *value});
+  }
   /// Adds one point of a curve.
   void point(const char* quantity, const char* equation, const char* form, double t, double value) {
-    rows_.push_back({quantity, equation, form, t, value});
+    rows_.push_back({quantity, equation, form, start_ + t, value});
   }
   std::vector<Prediction> take() && { return std::move(rows_); }
 
  private:
+  double start_;
   std::vector<Prediction> rows_;
 };
 

@@ -21,26 +21,28 @@ constexpr double most_collisions = 3e7;
 // particles have stuck.
 constexpr double last_progress = 1.1, sticking_progress = 1.2;
 
-void add_front(Predictions& table, const theory::WetShock<double>& shock, double until) {
+void add_front(Predictions& table, const theory::WetShock<double>& shock, double until, bool lattice) {
   const theory::WetFront<double> front(shock);
+  const auto through = static_cast<double>(shock.particles / 2);  // collisions with all of the other row
   const auto turned = front.turnover();
-  if (turned) {
-    table.number("turnover_time", "(8)", "continuous", turned->time);
+  if (turned && turned->collisions <= through) {
+    table.time("turnover_time", "(8)", "continuous", turned->time);
     table.number("turnover_collisions", "(8)", "continuous", turned->collisions);
     table.number("maximal_front", "(8)", "continuous", turned->position - shock.origin());
-    if (turned->collisions < most_collisions)
+    if (lattice && turned->collisions < most_collisions)
       if (const auto last = theory::turnover_collision(shock)) {
-        table.number("turnover_time", "t_n", "discrete", last->time);
+        table.time("turnover_time", "t_n", "discrete", last->time);
         table.number("turnover_collisions", "n", "discrete", static_cast<double>(last->collision));
         table.number("maximal_front", "max(x_n - x_0)", "discrete", last->position - shock.origin());
       }
   }
   const double end = turned ? std::min(until, 2 * turned->time) : until;
   theory::WetFrontRecursion<double> recursion(shock);
-  const bool step_by_step = 2 * shock.speed * end / shock.spacing < most_collisions;
+  const bool step_by_step = lattice && 2 * shock.speed * end / shock.spacing < most_collisions;
   for (int k = 0; k <= curve_points; ++k) {
     const double t = curve_time(end, k);
     if (const auto here = front.at_time(t)) {
+      if (here->collisions > through) break;
       table.point("front_position", "(8)", "continuous", t, here->position);
       table.point("front_velocity", "(8)", "continuous", t, here->velocity);
     }
@@ -53,7 +55,7 @@ void add_front(Predictions& table, const theory::WetShock<double>& shock, double
   }
 }
 
-void add_energy(Predictions& table, const theory::WetShock<double>& shock, double until) {
+void add_energy(Predictions& table, const theory::WetShock<double>& shock, double until, bool lattice) {
   const auto up_to = [&](double progress) {
     return shock.loss > 0 ? std::min(until, progress / theory::wet_progress(shock, 1.0)) : until;
   };
@@ -66,13 +68,13 @@ void add_energy(Predictions& table, const theory::WetShock<double>& shock, doubl
   }
 
   const double end = up_to(sticking_progress);
-  if (theory::wet_collisions(shock, end) > most_collisions) return;
+  if (!lattice || theory::wet_collisions(shock, end) > most_collisions) return;
   std::vector<std::uint64_t> counts(curve_points + 1);  // by the first point of the curve that includes the collision
   const auto stuck = theory::cross_rows(shock, end, [&](double time, int pairs) {
     const auto place = static_cast<std::size_t>(std::ceil(time / end * curve_points));
     counts[std::min<std::size_t>(place, curve_points)] += static_cast<std::uint64_t>(pairs);
   });
-  table.number("first_sticking_time", "pairs (i,j)", "discrete", stuck);
+  table.time("first_sticking_time", "pairs (i,j)", "discrete", stuck);
   std::uint64_t collisions = 0;
   for (int k = 0; k <= curve_points; ++k) {
     const double t = curve_time(end, k);
@@ -118,8 +120,9 @@ void predict_wet(const Scene& scene, Predictions& table) {
   if (clusters) return;
   const double until = scene.run.until.value - scene.run.start.value;
   table.number("initial_energy", "N m u0^2/2", "continuous", theory::initial_energy(shock));
-  add_front(table, shock, until);
-  add_energy(table, shock, until);
+  const bool lattice = scene.initial.positions == Positions::lattice;
+  add_front(table, shock, until, lattice);
+  add_energy(table, shock, until, lattice);
   theory::InelasticShock<double> sticky{0, shock.speed, shock.spacing, shock.mass, shock.particles};
   for (int k = 0; k <= curve_points; ++k)
     table.point("energy_sticky", "section VI", "continuous", curve_time(until, k),

@@ -232,6 +232,10 @@ TEST(FixedBins, CountEveryValueOnceAndAddExactly) {
   EXPECT_EQ(bins.place(std::nextafter(1.0, 0)), 8U);
   for (std::size_t k = 0; k < 8; ++k) EXPECT_EQ(bins.place(bins.edge(k)), k + 1) << "an edge belongs to the bin above";
   // Widths that no double holds: a value just below `to` must not land beyond the last bin.
+  for (const std::size_t count : {49U, 100U}) {
+    const FixedBins whole{0, static_cast<double>(count), count};
+    for (std::size_t k = 0; k < count; ++k) EXPECT_EQ(whole.place(whole.edge(k)), k + 1) << k << " of " << count;
+  }
   const FixedBins thirds{0, 0.3, 3};
   EXPECT_EQ(thirds.place(std::nextafter(0.3, 0)), 3U);
 

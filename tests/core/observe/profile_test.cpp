@@ -169,6 +169,7 @@ TEST(GapStatistics, LeastAndMedian) {
   c.gap = {3, 1, 4, 1.5, 9};
   EXPECT_EQ(gap_statistics(c).least, 1);
   EXPECT_EQ(gap_statistics(c).median, 3);
+  EXPECT_EQ(median(std::vector{4., 1., 7., 2.}), 3);
 }
 
 }  // namespace cradle::test::profile_test

@@ -1,7 +1,9 @@
 // Proofs of whole runs by the program, and the bounds in their files. (Every law that can be proved, threads, and where
 // proofs end: tests/tools/outputs.txt. What is refused: tests/tools/messages.txt.)
 #include <cmath>
+#include <cstdint>
 #include <string>
+#include <vector>
 
 #include "cradle/tests/tools/program.hpp"
 
@@ -83,6 +85,16 @@ TEST_F(Certified, ACollapseIsProvedToTheEndOfTheRangeOfDoubles) {
   EXPECT_TRUE(has(printed.out, "estimated by the run:\ninelastic collapse at"));
   EXPECT_NE(of_certificate<std::string>("not_proved"), "");
 #endif
+}
+
+TEST_F(Certified, ClustersHaveTheNamesOfTheRun) {
+  certify_scene("law.type = \"sticky\"\ninitial = {type = \"list\", x = [0, 1, 2.5], v = [1, 0, 0], m = [1, 3, 1]}\n"
+                "run.until = 1.25\noutput.snapshots = [1.25]\n");
+  const Result r = result();
+  const auto names = numbers<std::uint64_t>(r, "snapshots/0000", "index");
+  EXPECT_EQ(names, (std::vector<std::uint64_t>{1, 2}));
+  for (const char* proved : {"certificate/snapshots/0000", "exact/snapshots/0000"})
+    EXPECT_EQ(numbers<std::uint64_t>(r, proved, "index"), names) << proved;
 }
 
 TEST_F(Certified, AccountsOfWallsHaveBounds) {

@@ -104,10 +104,34 @@ TEST(WetPredictions, GoAsFarAsTheyApply) {
   EXPECT_EQ(curve(free, "front_position", "discrete").back().value, 24.5);
   EXPECT_FALSE(number(free, "zone_width", "continuous"));
   // forms that go collision by collision are left out where that would take long
-  const auto tiny = table_of_fig6({"law.loss=1e-12", "run.until=1e12"});
+  const auto tiny = table_of_fig6({"law.loss=1e-12", "run.until=1e12", "initial.particles=1e12"});
   EXPECT_TRUE(number(tiny, "turnover_time", "continuous"));
   EXPECT_FALSE(number(tiny, "turnover_time", "discrete"));
   EXPECT_TRUE(curve(tiny, "energy", "discrete").empty());
+  // the front has passed through a row of 20, one collision after the other
+  for (const auto& few : {table_of("fig2", {"initial.particles=40", "run.until=300"}),
+                          table_of_fig6({"initial.particles=40", "run.until=300"})}) {
+    EXPECT_FALSE(number(few, "turnover_time", "continuous"));
+    EXPECT_FALSE(number(few, "collapse_onset_time", "continuous"));
+    for (const char* form : {"continuous", "discrete"}) {
+      const auto place = curve(few, "front_position", form);
+      EXPECT_GT(*place.back().t, 19);
+      EXPECT_LT(*place.back().t, 21.5);
+    }
+    for (const auto& p : curve(few, "energy", "continuous")) EXPECT_GT(p.value, 4);
+  }
+  // lattices alone go by a recursion
+  EXPECT_TRUE(curve(table_of_fig6({"initial.positions=poisson", "initial.perturbation=", "run.until=50"}),
+                    "front_position", "discrete")
+                  .empty());
+  // times are those of the scene
+  const auto now = table_of_fig6({"run.until=50"}), later = table_of_fig6({"run.start=100", "run.until=150"});
+  ASSERT_EQ(now.size(), later.size());
+  for (std::size_t k = 0; k < now.size(); ++k) {
+    EXPECT_NEAR(now[k].t.value_or(0) + 100, later[k].t.value_or(100), 1e-12);
+    const double apart = now[k].quantity == "turnover_time" || now[k].quantity == "first_sticking_time" ? 100 : 0;
+    EXPECT_NEAR(now[k].value + apart, later[k].value, 1e-11) << now[k].quantity;
+  }
   // a run of no length
   for (const auto& p : table_of_fig6({"run.until=0"})) EXPECT_TRUE(std::isfinite(p.value)) << p.quantity;
 }

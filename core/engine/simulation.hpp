@@ -242,16 +242,15 @@ class Simulation : public Readings<Chain> {
         chain_.make_room();
         next_.fill(chain_);
       }
-    const std::uint64_t particles = active();
-    const bool move = pacing_.origin_moves(notice, counts_.collisions, last_collision_, particles);
+    const bool move = pacing_.origin_moves(notice, counts_.collisions, last_collision_, active());
     const bool stands_still = (move || !pacing_.in_epochs) &&
-                              standstill_.at(last_collision_, elapsed(last_collision_), counts_.collisions, particles,
+                              standstill_.at(last_collision_, elapsed(last_collision_), counts_.collisions, active(),
                                              policy_.follows_a_gap() && rebound(chain_, s).has_value());
     const bool moves = move && !stands_still, poll = moves || counts_.collisions >= pacing_.next_review;
     const T before = last_collision_;
     if (moves) move_origin(before);
     if (moves || !pacing_.in_epochs) standstill_.time = last_collision_;
-    pacing_.reviewed(counts_.collisions, before, last_collision_, particles, moves);
+    pacing_.reviewed(counts_.collisions, before, last_collision_, active(), moves);
     aim();
     if (stands_still) return Status::exhausted;
     return judged == Status::reached && poll ? policy_.poll(last_collision_time(), counts_) : judged;

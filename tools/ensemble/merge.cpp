@@ -32,7 +32,7 @@ std::unique_ptr<EnsembleStore> merged(const std::vector<std::string>& files) {
   auto all = std::make_unique<EnsembleStore>(study, "");
   for (const std::string& file : files) {
     EnsembleStore one(study, file);
-    one.load_result("leave it out: files of one scene, with the same --spread, are merged");
+    one.load_result("leave it out, since files of one scene with the same --spread are merged");
     take(*all, one, file);
   }
   return all;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -95,11 +96,11 @@ bin_float value(const std::string& text, const Run& run) {
 }
 
 // Decimal digits that numbers of two runs share: -log10 of their difference against their size or, where that is
-// given, `scale`; no more than either type has.
+// given, `scale`; no more than either type has. NaN if neither has the number.
 double shared_digits(const std::string& a, const Run& of_a, const std::string& b, const Run& of_b,
                      const std::string& scale = "0") {
   const double most = std::min(digits_held(of_a), digits_held(of_b));
-  if (a.empty() || b.empty()) return a.empty() && b.empty() ? most : 0;
+  if (a.empty() || b.empty()) return a.empty() && b.empty() ? std::nan("") : 0;
   const bin_float x = value(a, of_a), y = value(b, of_b);
   const bin_float size = std::max({magnitude(x), magnitude(y), magnitude(value(scale, of_b))});
   const bin_float apart = magnitude(bin_float(x - y));
@@ -124,8 +125,7 @@ Trusted compare(const Traced& run, const Traced& reference) {
   Trusted trusted;
   trusted.precision = precision_name(run.scene.run);
   trusted.coordinates = run.scene.run.coordinates == Coordinates::gaps ? "gaps" : "absolute";
-  trusted.seconds = run.seconds;
-  trusted.outcome = end_row(run.outcome.end).text;
+  trusted.seconds = run.seconds, trusted.outcome = end_row(run.outcome.end).text;
   const std::size_t samples = std::min(a.size(), b.size());
   // If later all collisions so far have the same order, that was right; numbers may be the same again by chance.
   const auto in_order = [&](std::size_t k) { return a[k].digest == b[k].digest; };
@@ -245,7 +245,7 @@ std::string trust_table(const Scene& scene, const std::vector<Trusted>& runs) {
                          "front", "t_c", "seconds", "proved");
   for (const auto& run : runs) {
     const bool reference = &run == &runs.back();
-    const auto digits = [&](double d) { return reference || d < 0 ? std::string("-") : fmt::format("{:.1f}", d); };
+    const auto digits = [&](double d) { return reference || !(d >= 0) ? std::string("-") : fmt::format("{:.1f}", d); };
     const bool moved = !run.times.empty() && run.times.back() > scene.run.start.value;
     const auto last = [&](const std::vector<double>& d) { return digits(moved ? d.back() : -1); };
     const auto proved = run.proved_to_end     ? std::string("to the end")

@@ -195,8 +195,13 @@ RunEnd end_of(Status status, bool order_lost) {
 // About how many digits of the energy at the end are right. C collisions of N particles each round a speed by eps,
 // together by eps sqrt(1 + C/N), and change the energy by twice that. If the chain holds closing speeds, the error is
 // relative to the present ones; if it holds velocities, to those at the start. Where collisions make errors grow, only
-// an engine that watches them knows by how much.
+// an engine that watches them knows by how much. After an uncertain collision the motion may be another one: then none
+// are right, unless nothing changes the energy.
 double energy_digits(const Scene& scene, const AnyEngine& engine, const Moment& now) {
+  const auto changes = [&](const Number& by) { return by.value != 0; };
+  if (engine.account().uncertain && (scene.gravity.acts() || changes(now.state().energy_lost) ||
+                                     changes(now.state().walls[0].given) || changes(now.state().walls[1].given)))
+    return 0;
   const double at_start = now.energy_at_start().value, at_end = now.state().energy.value;
   const auto active = static_cast<double>(std::max<ParticleIndex>(engine.collided_particles(), 1));
   double error = 2 * std::sqrt(1 + static_cast<double>(engine.counts().collisions) / active);

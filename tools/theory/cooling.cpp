@@ -7,6 +7,9 @@
 
 namespace cradle::tools {
 
+// The sticky gas is that of infinitely many particles: its curve ends where so many clusters are left.
+constexpr double few = 10;
+
 void predict_cooling(const Scene& scene, Predictions& table) {
   const auto particles = static_cast<double>(scene.initial.particles);
   const theory::FreeCooling gas{scene.initial.variance.value, particles / scene.initial.length.value};
@@ -17,9 +20,11 @@ void predict_cooling(const Scene& scene, Predictions& table) {
   if (dry) table.number("haff_time", "Haff 1983", "continuous", theory::haff_time(gas, scene.law.restitution.value));
   for (int k = 0; k <= curve_points; ++k) {
     const double t = flight * std::pow(until / flight, static_cast<double>(k) / curve_points);
-    table.point("energy_sticky", "t^(-2/3)", "continuous", t, particles * theory::sticky_energy_per_particle(gas, t));
-    if (scene.law.type == LawType::sticky)
-      table.point("clusters", "t^(-2/3)", "continuous", t, particles * theory::sticky_clusters_per_particle(gas, t));
+    const double clusters = particles * theory::sticky_clusters_per_particle(gas, t);
+    if (clusters > few) {
+      table.point("energy_sticky", "t^(-2/3)", "continuous", t, particles * theory::sticky_energy_per_particle(gas, t));
+      if (scene.law.type == LawType::sticky) table.point("clusters", "t^(-2/3)", "continuous", t, clusters);
+    }
     if (dry)
       table.point("energy_haff", "Haff 1983", "continuous", t,
                   particles * theory::haff_energy_per_particle(gas, scene.law.restitution.value, t));

@@ -40,7 +40,7 @@ def draw_energy(result, theory, units, panels):
     top.set_xlim(time[0], time[-1])
     least, most = energy.min(), energy.max()
     change = most - least if most - least > 1e-9 * most else most  # rounding alone is none
-    top.set_ylim(0 if least < 0.6 * most else least - 0.1 * change, 1.05 * most if most > 0 else 1)
+    top.set_ylim(min(0, 1.05 * least) if least < 0.6 * most else least - 0.1 * change, 1.05 * most if most > 0 else 1)
     if top.get_ylim()[0] > 0:
         top.set_ylim(top=most + 0.1 * change)
     top.set_ylabel(units.label(r"kinetic energy $E$ ($m\,l^2/t^2$)", units.energy_label()))

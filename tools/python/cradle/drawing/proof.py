@@ -17,8 +17,10 @@ def certificates(result, units):
 
 def draw_trust(result, panels):
     """Digits of energy and front, and the time until which the sequence of collisions is right."""
-    axes = panels(2, 1, sharex=True, figsize=(6.4, 6.4))
-    for ax, name in zip(axes, ("energy", "front")):
+    shown = [name for name in ("energy", "front")  # there is no front on a ring
+             if any(np.isfinite(run[f"{name}_digits"]).any() for run in result.trust)]
+    axes = np.atleast_1d(panels(len(shown), 1, sharex=True, figsize=(6.4, 1.2 + 2.6 * len(shown))))
+    for ax, name in zip(axes, shown):
         for run, colour in zip(result.trust[:-1], plt.rcParams["axes.prop_cycle"].by_key()["color"] * 4):
             line = "--" if run["coordinates"] == "absolute" else "-"
             label = f"{run['precision']}, {run['coordinates']}"
@@ -27,8 +29,9 @@ def draw_trust(result, panels):
                 ax.axvline(run["collisions_right_until"], color=colour, linestyle=line, linewidth=0.8)
         ax.set(ylabel=f"right digits of the {name}", ylim=(0, None))
     axes[0].legend(fontsize="small", title=f"against {result.trust[-1]['precision']}", ncols=2)
-    note(axes[0], "vertical lines: up to there the sequence of collisions is right")
-    axes[1].set_xlabel("time ($t$)")
+    if not all(run["right_to_end"] for run in result.trust[:-1]):
+        note(axes[0], "vertical lines: up to there the sequence of collisions is right")
+    axes[-1].set_xlabel("time ($t$)")
 
 
 def draw_certificate(result, units, panels):

@@ -198,11 +198,8 @@ RunEnd end_of(Status status, bool order_lost) {
 // an engine that watches them knows by how much. After an uncertain collision the motion may be another one: then none
 // are right, unless nothing changes the energy.
 double energy_digits(const Scene& scene, const AnyEngine& engine, const Moment& now) {
-  const auto changes = [&](const Number& by) { return by.value != 0; };
-  if (engine.account().uncertain && (scene.gravity.acts() || changes(now.state().energy_lost) ||
-                                     changes(now.state().walls[0].given) || changes(now.state().walls[1].given)))
-    return 0;
   const double at_start = now.energy_at_start().value, at_end = now.state().energy.value;
+  if (engine.account().uncertain && at_start != at_end) return 0;
   const auto active = static_cast<double>(std::max<ParticleIndex>(engine.collided_particles(), 1));
   double error = 2 * std::sqrt(1 + static_cast<double>(engine.counts().collisions) / active);
   const bool velocities = scene.run.coordinates == Coordinates::absolute || particles_merge(scene);

@@ -195,7 +195,7 @@ RunEnd end_of(Status status, bool order_lost) {
 // About how many digits of the energy at the end are right. C collisions of N particles each round a speed by eps,
 // together by eps sqrt(1 + C/N), and change the energy by twice that. If the chain holds closing speeds, the error is
 // relative to the present ones; if it holds velocities, to those at the start. Where collisions make errors grow, only
-// an engine that watches them knows by how much. After an uncertain one none are, unless the energy is what it was.
+// an engine that watches them knows by how much. After an uncertain one no digit is right, unless nothing is changed.
 double energy_digits(const Scene& scene, const AnyEngine& engine, const Moment& now) {
   const double at_start = now.energy_at_start().value, at_end = now.state().energy.value;
   if (engine.account().uncertain && at_start != at_end) return 0;

@@ -39,7 +39,7 @@ class Predictions {
   }
   /// The same for a time.
   void time(const char* quantity, const char* equation, const char* form, std::optional<double> value) {
-    if (value) rows_.push_back({quantity, equation, form, std::nullopt, start_ + *value});
+    if (value) number(quantity, equation, form, start_ + *value);
   }
   /// Adds one point of a curve.
   void point(const char* quantity, const char* equation, const char* form, double t, double value) {

@@ -76,8 +76,6 @@ Scene at_digits(Scene scene, unsigned digits, Coordinates coordinates) {
   return without_tables(std::move(scene));
 }
 
-unsigned digits_of(const Run& run) { return run.precision == Precision::mpfr ? static_cast<unsigned>(run.digits) : 31; }
-
 Traced traced(const Scene& scene, const TrustOptions& options) {
   const auto started = std::chrono::steady_clock::now();
   TraceObserver observer;
@@ -108,11 +106,6 @@ double shared_digits(const std::string& a, const Run& of_a, const std::string& b
   return std::clamp(-static_cast<double>(log10(bin_float(apart / size))), 0.0, most);
 }
 
-// Number of samples up to the last one that agrees: a collision at a sample's time may fall on either side of it.
-template <class Same> std::size_t agreeing_for_good(std::size_t samples, Same same) {
-  while (samples > 0 && !same(samples - 1)) --samples;
-  return samples;
-}
 // Number of samples before the first one that does not agree.
 template <class Same> std::size_t agreeing(std::size_t samples, Same same) {
   std::size_t end = 0;
@@ -127,10 +120,11 @@ Trusted compare(const Traced& run, const Traced& reference) {
   trusted.coordinates = run.scene.run.coordinates == Coordinates::gaps ? "gaps" : "absolute";
   trusted.seconds = run.seconds, trusted.outcome = end_row(run.outcome.end).text;
   const std::size_t samples = std::min(a.size(), b.size());
-  // If later all collisions so far have the same order, that was right; numbers may be the same again by chance.
   const auto in_order = [&](std::size_t k) { return a[k].digest == b[k].digest; };
-  const std::size_t same =
-      run.has_an_order || reference.has_an_order ? agreeing_for_good(samples, in_order) : agreeing(samples, in_order);
+  const bool ordered = run.has_an_order || reference.has_an_order;
+  std::size_t same = ordered ? samples : agreeing(samples, in_order);
+  // If later all collisions so far have the same order, that was right; numbers may be the same again by chance.
+  while (ordered && same > 0 && !in_order(same - 1)) --same;
   const std::size_t counted = agreeing(
       samples, [&](std::size_t k) { return a[k].collisions == b[k].collisions && a[k].merges == b[k].merges; });
   if (same > 0) trusted.time = a[same - 1].time, trusted.collisions = a[same - 1].collisions;
@@ -148,6 +142,10 @@ Trusted compare(const Traced& run, const Traced& reference) {
     trusted.energy_digits.push_back(shared(a[k].energy, b[k].energy, b[0].energy));
     trusted.front_digits.push_back(shared(a[k].front, b[k].front, "0"));
   }
+  const std::size_t to_six = agreeing(trusted.times.size(), [&](std::size_t k) {
+    return !(trusted.energy_digits[k] < 6) && !(trusted.front_digits[k] < 6);  // NaN: there is no front
+  });
+  if (to_six > 0) trusted.six_digits_time = trusted.times[to_six - 1];
   if (!run.outcome.collapse_time.empty() && !reference.outcome.collapse_time.empty())
     trusted.collapse_digits = shared(run.outcome.collapse_time, reference.outcome.collapse_time, "0");
   return trusted;
@@ -189,11 +187,12 @@ class TracedCertifier final : public Certifier {
 
 // In long runs with no more digits than the reference has: more would take longer than all the others together.
 ProvedTrace proved_trace(const Scene& scene, const Traced& reference, const TrustOptions& options) {
-  const unsigned most = reference.outcome.collisions < 1'000'000 ? 1000 : digits_of(reference.scene.run);
+  const auto digits_of_reference = static_cast<unsigned>(reference.scene.run.digits);  // 0: not mpfr
+  const unsigned most = reference.outcome.collisions < 1'000'000 ? 1000 : std::max(digits_of_reference, 31U);
   ProvedTrace proof;
   if (not_provable(scene)) return proof;
   CertifyOptions how{rising_digits(), options.progress, options.interrupt, {}};
-  std::erase_if(how.digits, [&](unsigned digits) { return digits > std::max(most, 31U); });
+  std::erase_if(how.digits, [&](unsigned digits) { return digits > most; });
   how.make = [&](const Scene& of, unsigned digits) {
     return std::make_unique<TracedCertifier>(certifier(of, digits), proof);
   };
@@ -239,10 +238,10 @@ std::vector<Trusted> trust(const Scene& scene, const TrustOptions& options) {
 
 std::string trust_table(const Scene& scene, const std::vector<Trusted>& runs) {
   const auto row = [](const auto&... cells) {
-    return fmt::format("{:<18}{:<13}{:>24}{:>12}{:>14}{:>8}{:>8}{:>8}{:>10}{:>22}\n", cells...);
+    return fmt::format("{:<18}{:<13}{:>24}{:>12}{:>14}{:>16}{:>8}{:>8}{:>8}{:>10}{:>22}\n", cells...);
   };
-  std::string text = row("precision", "coordinates", "collisions right until t", "collisions", "counts until", "energy",
-                         "front", "t_c", "seconds", "proved");
+  std::string text = row("precision", "coordinates", "collisions right until t", "collisions", "counts until",
+                         "6 digits until", "energy", "front", "t_c", "seconds", "proved");
   for (const auto& run : runs) {
     const bool reference = &run == &runs.back();
     const auto digits = [&](double d) { return reference || !(d >= 0) ? std::string("-") : fmt::format("{:.1f}", d); };
@@ -255,14 +254,14 @@ std::string trust_table(const Scene& scene, const std::vector<Trusted>& runs) {
                       : run.to_end ? fmt::format("{:.8g} (end)", run.time)
                                    : fmt::format("{:.8g}", run.time);
     text += row(run.precision, run.coordinates, upto, run.collisions, fmt::format("{:.8g}", run.counts_time),
-                last(run.energy_digits), last(run.front_digits), digits(run.collapse_digits),
-                fmt::format("{:.2f}", run.seconds), proved);
+                run.six_digits_time < 0 ? "-" : fmt::format("{:.8g}", run.six_digits_time), last(run.energy_digits),
+                last(run.front_digits), digits(run.collapse_digits), fmt::format("{:.2f}", run.seconds), proved);
   }
   text += "\nTimes are those of samples (output.series). Right: the same sequence of collisions at every particle as "
           "the reference; collisions: how many these are.\ncounts: numbers of collisions and merges. energy (against "
           "that at the start), front: digits shared with the reference at the last sample that both have, of those "
-          "that the type has, 100 at most; t_c: of the collapse time.\nproved: until when these collisions are proved "
-          "to be those of the exact "
+          "that the type has, 100 at most; t_c: of the collapse time. 6 digits until: the last sample up to which "
+          "energy and front share that many.\nproved: until when these collisions are proved to be those of the exact "
           "system (cradle certify).\n";
   if (!scene.run.stop_gap && status_of_text(runs.back().outcome) == Exit::collapse)
     text += "Each run ends where its own precision has settled the collapse, after a number of collisions of its own, "
@@ -282,6 +281,7 @@ Result trust_result(const Scene& scene, const std::vector<Trusted>& runs) {
                         {"collisions_right_until", run.time},
                         {"collisions_right", run.collisions},
                         {"counts_right_until", run.counts_time},
+                        {"six_digits_until", run.six_digits_time},
                         {"right_to_end", std::uint64_t{run.to_end}},
                         {"proved_until", run.proved_time},
                         {"proved_to_end", std::uint64_t{run.proved_to_end}}};

@@ -24,6 +24,8 @@ struct Trusted {
   bool proved_to_end = false;
   /// Counts (collisions, merges) right up to this time.
   double counts_time = 0;
+  /// Energy and right front have six digits of the reference or more in all samples up to this time; -1: in none.
+  double six_digits_time = -1;
   /// Per sample: decimal digits to which energy and right front agree with the reference, no more than the type has.
   std::vector<double> times, energy_digits, front_digits;
   double collapse_digits = -1;  // of the collapse time; -1: the run did not stop at a collapse

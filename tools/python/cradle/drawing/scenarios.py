@@ -16,7 +16,7 @@ def pictures(result, _theory, _units):
         if any(len(point.replicas.get("index", ())) >= ENOUGH for point in result.points):
             yield "scenarios", draw_scenarios, result
         yield "regimes", draw_regimes, result
-    elif any(known_times(point).size for point in result.points):
+    elif collapsed(result):
         yield "collapse", draw_collapse, result
 
 
@@ -96,11 +96,15 @@ def known_times(point):
     return finite(point.replicas.get("collapse_time", ()))
 
 
+def collapsed(result):
+    """The points of shocks of which enough replicas have collapsed for a distribution."""
+    return [p for p in result.points if p.word("initial", "type") == "rows" and known_times(p).size >= ENOUGH]
+
+
 def draw_collapse(result, panels):
     """Distributions of t_c over replicas, in units of the time when N_c particles are engaged."""
-    points = [point for point in result.points if known_times(point).size]
     ax = panels(figsize=(5.2, 3.6))
-    for point, colour in shaded(points):
+    for point, colour in shaded(collapsed(result)):
         restitution, speed = point.setting("law", "restitution"), point.setting("initial", "speed", 0.5)
         spacing = point.setting("initial", "spacing", 1.0)
         engaged = 2 / (1 - 4 / np.pi * np.arctan(np.sqrt(restitution))) * spacing / (2 * speed)

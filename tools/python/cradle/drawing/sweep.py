@@ -1,11 +1,11 @@
 """Sweeps: results against the parameters that were varied. Rings: the energies of all points in one panel, and their
-ratio to the sticky one's. Wet shocks: the width of the interaction zone (Fig. 8). Others: every number of the
-summary."""
+ratio to the sticky one's. Wet shocks: the width of the interaction zone (Fig. 8). All: every number of the summary
+against what was varied."""
 import numpy as np
 
 from . import beyond
 from .cooling import cooled, ring_of, sticky_law
-from .style import BLUE, GREY, ORANGE, distinct, plt, shade_map, shades
+from .style import BLUE, GREY, ORANGE, distinct, note, plt, shade_map, shades
 from .zone import model_width
 
 SPEED, LOSS = "initial.speed", "law.loss"
@@ -22,7 +22,7 @@ def pictures(result, theory, units):
         yield "cooling", draw_cooling, result
     if "zone_width" in result.sweep and {SPEED, LOSS} & set(keys):
         yield "zone", draw_widths, result, keys
-    if numbers(result) and not cooling_points(result):
+    if numbers(result) and (len(keys) == 1 or is_grid(keys) or not cooling_points(result)):
         yield "parameters", draw_map if is_grid(keys) else draw_cuts, result, keys
 
 
@@ -166,6 +166,8 @@ def draw_cuts(result, keys, panels):
             spread(ax.set_yscale, result.sweep[name])
         spread(axes[-1, column].set_xscale, x, 8)
         axes[-1, column].set_xlabel(key)
+    if any(error is not None and error.any() for error in (error_of(result, name) for name in names)):
+        note(axes[0, -1], "bars: standard errors over replicas")
     for ax, name in zip(axes[:, 0], names):
         unit = result.sweep[name].unit
         ax.set_ylabel(name.replace("_", " ") + (f" (${unit}$)" if unit not in ("", "1") else ""))

@@ -105,18 +105,19 @@ def setting(point: Result, key: str):
 def precisions(result: Result) -> str:
     """One row per precision: the time until which it was right, and digits at the end."""
     heads = ["precision", "coordinates", "outcome", "collisions right", "until t", "counts right until t",
-             "proved until t", "digits of energy at the end", "digits of front at the end"]
+             "6 digits until t", "proved until t", "digits of energy at the end", "digits of front at the end"]
     rows = []
     for number_of, table in enumerate(result.trust):
         about = table.attributes
         whole = "to the end" if about.get("right_to_end") else ""
-        proved = about.get("proved_until", -1)
+        six, proved = (about.get(name, -1) for name in ("six_digits_until", "proved_until"))
         digits = [table[name][-1].item() if len(table[name]) else np.nan for name in ("energy_digits", "front_digits")]
         reference = number_of == len(result.trust) - 1
         rows.append([(number_of, text(about["precision"])), (about["coordinates"], text(about["coordinates"])),
                      (about["outcome"], text(about["outcome"])), cell(about["collisions_right"]),
                      (about["collisions_right_until"], whole or number(about["collisions_right_until"], 10)),
                      (about["counts_right_until"], number(about["counts_right_until"], 10)),
+                     (six, number(six, 10) if six >= 0 else "–"),
                      (proved, "to the end" if about.get("proved_to_end") else
                       (number(proved, 10) if proved >= 0 else "–"))]
                     + [(value, "reference" if reference else number(value, 3))

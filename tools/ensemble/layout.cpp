@@ -65,7 +65,8 @@ ReplicaLayout replica_layout(const Scene& scene) {
   check_ensemble(scene);
   const PlannedTimes times = planned_times(scene);
   ReplicaLayout layout;
-  const auto add = [&](const Column& column, const std::string& group, std::size_t rows, std::size_t number = 0) {
+  const auto add = [&](const Column& column, const std::string& group, std::size_t rows,
+                       std::optional<std::size_t> number = {}) {
     layout.quantities.push_back(
         {group, column.name, column.unit, column.description, layout.entries, rows, column.width, number});
     layout.entries += layout.quantities.back().size();
@@ -77,7 +78,7 @@ ReplicaLayout replica_layout(const Scene& scene) {
         if (const Column& column = group.columns[k]; column.name == "time")
           layout.time = column;  // the first column of "series"
         else if (!column.names)
-          add(column, group.name, times.series.size(), k);
+          add(column, group.name, times.series.size(), group.name == "series" ? std::optional(k) : std::nullopt);
   layout.time.values = times.series;
   const auto add_binned = [&](const Group& table, const std::string& group, std::vector<Attribute> attributes) {
     layout.binned.push_back({group, std::move(attributes), {}});
@@ -149,9 +150,9 @@ void ReplicaLayout::put_values(RunEnd end, const SeriesNumbers& series, const st
   };
   for (const Quantity& quantity : quantities) {
     double* const to = values.data() + quantity.offset;
-    if (quantity.group == "series") {
-      if (quantity.column >= series.size() || series[quantity.column].size() < samples) throw wrong(quantity);
-      std::copy_n(series[quantity.column].begin(), samples, to);
+    if (quantity.column) {
+      if (*quantity.column >= series.size() || series[*quantity.column].size() < samples) throw wrong(quantity);
+      std::copy_n(series[*quantity.column].begin(), samples, to);
       continue;
     }
     const auto table = std::ranges::find(tables, quantity.group, &Group::name);

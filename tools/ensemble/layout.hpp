@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -25,7 +26,7 @@ inline constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 struct Quantity {
   std::string group, name, unit, description;
   std::size_t offset = 0, rows = 0, width = 1;
-  std::size_t column = 0;  // in the table "series"
+  std::optional<std::size_t> column = {};  // in the table "series"
   std::size_t size() const { return rows * width; }
 };
 

@@ -6,20 +6,15 @@
 
 namespace cradle::tools {
 
-void ReplicaRun::Numbers::add(const Group&, Columns& rows) {
+bool ReplicaRun::Numbers::take_series(std::vector<NumberColumn>& rows) {
   series.resize(rows.size());
   for (std::size_t k = 0; k < rows.size(); ++k) {
-    const auto put = [&](auto& values) {
-      series[k].insert(series[k].end(), values.begin(), values.end());
-      values.clear();
-    };
-    if (auto* numbers = std::get_if<NumberColumn>(&rows[k]))
-      put(numbers->values);
-    else if (auto* whole = std::get_if<std::vector<std::uint64_t>>(&std::get<tools::Numbers>(rows[k])))
-      put(*whole);
-    else
-      put(std::get<std::vector<double>>(std::get<tools::Numbers>(rows[k])));
+    std::vector<double>& values = rows[k].values;
+    if (series[k].empty()) series[k].swap(values);
+    series[k].insert(series[k].end(), values.begin(), values.end());
+    values.clear();
   }
+  return true;
 }
 
 void ReplicaRun::Numbers::begin_again() {

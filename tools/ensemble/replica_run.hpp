@@ -29,8 +29,7 @@ class ReplicaRun {
   class Numbers final : public MemorySink {
    public:
     Numbers() : MemorySink(Tables::for_statistics) {}
-    using MemorySink::add;
-    void add(const Group& table, Columns& rows) override;
+    bool take_series(std::vector<NumberColumn>& rows) override;
     void begin_again();
 
     ReplicaLayout::SeriesNumbers series;

@@ -55,19 +55,18 @@ class EventMeasurement {
  private:
   Recorded taken_rows() {
     resize(std::exchange(rows_, 0));
-    return {{"events",
-             {},
-             {{"left", "1", "number of the left particle at the start", {}},
-              {"right", "1", "number of the right particle at the start", {}},
-              {"time", "t", "time of the collision, rounded", {}},
-              {"time_low", "t", "what time misses: the collision is at time + time_low", {}},
-              {"interval", "t", "time since the collision before", {}},
-              {"closing_speed", "l/t", "closing speed before the collision", {}},
-              {"kind", "1", "0 by the law, 1 below the cut-off or within the contact time, 2 merged", {}, 1, true}}},
-            columns(taken(left_), taken(right_), std::exchange(time_, NumberColumn(exact_)), taken(low_),
-                    std::exchange(interval_, NumberColumn(exact_)), std::exchange(speed_, NumberColumn(exact_)),
-                    taken(kind_)),
-            {}};
+    return {
+        {"events",
+         {},
+         {{"left", "1", "number of the left particle at the start", {}},
+          {"right", "1", "number of the right particle at the start", {}},
+          {"time", "t", "time of the collision, rounded", {}},
+          {"time_low", "t", "what time misses: the collision is at time + time_low", {}},
+          {"interval", "t", "time since the collision before", {}},
+          {"closing_speed", "l/t", "closing speed before the collision", {}},
+          {"kind", "1", "0 by the law, 1 below the cut-off or within the contact time, 2 merged", {}, 1, true}}},
+        columns(taken(left_), taken(right_), taken(time_), taken(low_), taken(interval_), taken(speed_), taken(kind_)),
+        {}};
   }
 
   Recorded initial_rows(const Moment& now) const {

@@ -73,8 +73,8 @@ class TableSink {
   virtual void add(Group&& rows) = 0;
   /// And, if the columns have texts, to that of the decimals.
   void add(Recorded&& rows);
-  /// The same for a table that gets rows again and again: empties the columns.
-  virtual void add(const Group& table, Columns& rows) { add(Recorded{table, std::exchange(rows, {}), {}}); }
+  /// Statistics take the rows of the series as they are, and empty them; others get a table of them (false).
+  virtual bool take_series(std::vector<NumberColumn>&) { return false; }
 
  private:
   Tables tables_;
@@ -82,5 +82,8 @@ class TableSink {
 
 /// Returns the contents and leaves the container empty.
 template <class Numbers> Numbers taken(Numbers& numbers) { return std::exchange(numbers, Numbers()); }
+inline NumberColumn taken(NumberColumn& column) {
+  return std::exchange(column, NumberColumn(column.texts.has_value()));
+}
 
 }  // namespace cradle::tools

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <limits>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "cradle/tools/record/measurement.hpp"
@@ -16,18 +15,19 @@ namespace cradle::tools {
 /// Whether particles end up in two heavy clusters and a cloud: those that merge on a line do, on a ring they do not.
 inline bool has_clouds(const Scene& scene) { return law_row(scene).merges && !scene.initial.on_ring(); }
 
-/// A row of a column: of the run's type, a double, or a whole number.
-using SeriesEntry = std::variant<Number, double, std::uint64_t>;
+/// What a column holds: numbers of the run's type with all their digits, doubles, or whole numbers below 2^53.
+enum class Holds { numbers, doubles, whole };
 
 struct SeriesColumn {
   const char *name, *unit, *text;
   bool (*when)(const Scene&);
-  SeriesEntry (*at)(const Moment&);
+  Number (*at)(const Moment&);
+  Holds holds = Holds::numbers;
 };
 
 inline const std::vector<SeriesColumn>& series_columns() {
   using At = const Moment&;
-  using Whole = std::uint64_t;
+  static constexpr auto plain = [](auto x) { return Number{static_cast<double>(x), nullptr}; };
   static const Number nan{none(), nullptr};
   constexpr auto always = [](const Scene&) { return true; };
   constexpr auto gravity = [](const Scene& scene) { return scene.gravity.acts(); };
@@ -39,55 +39,55 @@ inline const std::vector<SeriesColumn>& series_columns() {
   constexpr auto core = [](const Scene& scene) { return scene.output.core; };
   static const std::vector<SeriesColumn> all{
       {"time", "t", "a sample is the state after all collisions at times <= t", always,
-       [](At at) -> SeriesEntry { return at.time.meant; }},
+       [](At at) -> Number { return at.time.meant; }},
       {"energy", "m l^2/t^2", "kinetic energy of all particles of the scene", always,
-       [](At at) -> SeriesEntry { return at.state().energy; }},
+       [](At at) -> Number { return at.state().energy; }},
       {"potential_energy", "m l^2/t^2", "potential energy of all particles under gravity, 0 at x = 0", gravity,
-       [](At at) -> SeriesEntry { return at.potential_energy(); }},
+       [](At at) -> Number { return at.potential_energy(); }},
       {"energy_lost", "m l^2/t^2", "energy lost in collisions since the start, with walls too", always,
-       [](At at) -> SeriesEntry { return at.state().energy_lost; }},
+       [](At at) -> Number { return at.state().energy_lost; }},
       {"collisions", "1", "collisions since the start, those below the cut-off and merges included", always,
-       [](At at) -> SeriesEntry { return Whole{at.state().counts.collisions}; }},
+       [](At at) { return plain(at.state().counts.collisions); }, Holds::whole},
       {"collisions_below_cutoff", "1", "collisions closing slower than the cut-off", always,
-       [](At at) -> SeriesEntry { return Whole{at.state().counts.below_cutoff}; }},
-      {"merges", "1", "merges since the start", always,
-       [](At at) -> SeriesEntry { return Whole{at.state().counts.merges}; }},
+       [](At at) { return plain(at.state().counts.below_cutoff); }, Holds::whole},
+      {"merges", "1", "merges since the start", always, [](At at) { return plain(at.state().counts.merges); },
+       Holds::whole},
       {"particles", "1", "particles in the active zone, between the outermost that have collided", always,
-       [](At at) -> SeriesEntry { return static_cast<Whole>(at.state().particles); }},
+       [](At at) { return plain(at.state().particles); }, Holds::whole},
       {"front_left", "l", "position of the leftmost particle that has collided", always,
-       [](At at) -> SeriesEntry { return at.state().front_left.value_or(nan); }},
+       [](At at) -> Number { return at.state().front_left.value_or(nan); }},
       {"front_right", "l", "position of the rightmost particle that has collided", always,
-       [](At at) -> SeriesEntry { return at.state().front_right.value_or(nan); }},
+       [](At at) -> Number { return at.state().front_right.value_or(nan); }},
       {"cloud_mass", "m", "mass of all particles in the active zone", clouds,
-       [](At at) -> SeriesEntry { return at.cloud().mass; }},
+       [](At at) -> Number { return at.cloud().mass; }},
       {"cloud_width", "l",
        "standard deviation of position, weighted by mass, of all in the active zone but the two heaviest clusters",
-       clouds, [](At at) -> SeriesEntry { return at.cloud().width; }},
+       clouds, [](At at) -> Number { return at.cloud().width; }},
       {"wall_left_collisions", "1", "collisions with the left wall since the start", left_wall,
-       [](At at) -> SeriesEntry { return Whole{at.state().walls[0].collisions}; }},
+       [](At at) { return plain(at.state().walls[0].collisions); }, Holds::whole},
       {"wall_left_energy", "m l^2/t^2", "energy that the left wall has given since the start", left_wall,
-       [](At at) -> SeriesEntry { return at.state().walls[0].given; }},
+       [](At at) -> Number { return at.state().walls[0].given; }},
       {"wall_left_momentum", "m l/t", "momentum that the left wall has given since the start", left_wall,
-       [](At at) -> SeriesEntry { return at.state().walls[0].momentum; }},
+       [](At at) -> Number { return at.state().walls[0].momentum; }},
       {"wall_left_lost", "m l^2/t^2", "energy lost in the left wall since the start; energy_lost has it too",
-       left_loses, [](At at) -> SeriesEntry { return at.state().walls[0].dissipated; }},
+       left_loses, [](At at) -> Number { return at.state().walls[0].dissipated; }},
       {"wall_right_collisions", "1", "collisions with the right wall since the start", right_wall,
-       [](At at) -> SeriesEntry { return Whole{at.state().walls[1].collisions}; }},
+       [](At at) { return plain(at.state().walls[1].collisions); }, Holds::whole},
       {"wall_right_energy", "m l^2/t^2", "energy that the right wall has given since the start", right_wall,
-       [](At at) -> SeriesEntry { return at.state().walls[1].given; }},
+       [](At at) -> Number { return at.state().walls[1].given; }},
       {"wall_right_momentum", "m l/t", "momentum that the right wall has given since the start", right_wall,
-       [](At at) -> SeriesEntry { return at.state().walls[1].momentum; }},
+       [](At at) -> Number { return at.state().walls[1].momentum; }},
       {"wall_right_lost", "m l^2/t^2", "energy lost in the right wall since the start; energy_lost has it too",
-       right_loses, [](At at) -> SeriesEntry { return at.state().walls[1].dissipated; }},
+       right_loses, [](At at) -> Number { return at.state().walls[1].dissipated; }},
       {"core_mass", "m", "mass within three core_width about the densest place", core,
-       [](At at) -> SeriesEntry { return at.core().mass; }},
+       [](At at) { return plain(at.core().mass); }, Holds::doubles},
       {"core_width", "l", "shortest length that holds more than half of the mass that has collided", core,
-       [](At at) -> SeriesEntry { return at.core().width; }},
+       [](At at) { return plain(at.core().width); }, Holds::doubles},
       {"core_velocity_range", "l/t", "range of the core's velocities, 5 % to 95 % of its mass", core,
-       [](At at) -> SeriesEntry { return at.core().velocity_range; }},
-      {"core_gap", "l", "median gap within the core", core, [](At at) -> SeriesEntry { return at.core().gap; }},
+       [](At at) { return plain(at.core().velocity_range); }, Holds::doubles},
+      {"core_gap", "l", "median gap within the core", core, [](At at) { return plain(at.core().gap); }, Holds::doubles},
       {"sticky_excess", "m l^2/t^2", "energy minus that of the sticky gas that began alike", core,
-       [](At at) -> SeriesEntry { return at.sticky_excess(); }},
+       [](At at) -> Number { return at.sticky_excess(); }},
   };
   return all;
 }
@@ -142,21 +142,22 @@ class SeriesMeasurement {
   explicit SeriesMeasurement(const Measured& of)
       : table_(std::move(series_tables(of.scene).front())), clouds_(has_clouds(of.scene)), exact_(of.exact) {
     for (const SeriesColumn& column : series_columns())
-      if (column.when(of.scene)) entries_.push_back(column.at);
+      if (column.when(of.scene)) {
+        columns_.push_back(&column);
+        values_.emplace_back(exact_ && column.holds == Holds::numbers);
+      }
   }
 
   // Keeps what does not change from run to run. Rows are left only by a run that was broken off.
   void begin_again() {
-    if (rows_ > 0) values_.clear();
-    for (NumberColumn* column : {&mass_, &x_, &v_}) *column = NumberColumn(exact_);
+    if (std::exchange(rows_, 0) == 0) return;
+    for (NumberColumn& column : values_) taken(column);
+    for (NumberColumn* column : {&mass_, &x_, &v_}) taken(*column);
     index_.clear();
-    rows_ = 0;
   }
   void record(const Moment& now, const Due&, TableSink& put) { record_last(now, put); }
   void record_last(const Moment& now, TableSink&) {
-    values_.resize(entries_.size(), Numbers());
-    for (std::size_t k = 0; k < values_.size(); ++k)
-      std::visit([&](const auto& entry) { enter(values_[k], entry); }, entries_[k](now));
+    for (std::size_t k = 0; k < values_.size(); ++k) values_[k].push_back(columns_[k]->at(now));
     ++rows_;
     if (!clouds_) return;
     const Number nan{none(), nullptr};
@@ -173,29 +174,25 @@ class SeriesMeasurement {
   std::size_t rows() const { return rows_; }
   void put_rows(TableSink& put) {
     if (std::exchange(rows_, 0) == 0) return;
-    put.add(table_, values_);
-    const auto numbers = [&](NumberColumn& column) { return std::exchange(column, NumberColumn(exact_)); };
-    if (clouds_)
-      put.add(Recorded{heaviest_table(), columns(numbers(mass_), numbers(x_), numbers(v_), taken(index_)), {}});
+    if (!put.take_series(values_)) {
+      Columns all;
+      for (std::size_t k = 0; k < values_.size(); ++k)
+        if (NumberColumn rows = taken(values_[k]); columns_[k]->holds == Holds::whole)
+          all.emplace_back(Numbers(std::vector<std::uint64_t>(rows.values.begin(), rows.values.end())));
+        else
+          all.emplace_back(std::move(rows));
+      put.add(Recorded{table_, std::move(all), {}});
+    }
+    if (clouds_) put.add(Recorded{heaviest_table(), columns(taken(mass_), taken(x_), taken(v_), taken(index_)), {}});
   }
 
  private:
   static constexpr std::uint64_t no_particle = std::numeric_limits<std::uint64_t>::max();
 
-  void enter(Columns::value_type& column, const Number& x) const {
-    if (!std::holds_alternative<NumberColumn>(column)) column = NumberColumn(exact_);
-    std::get<NumberColumn>(column).push_back(x);
-  }
-  template <class Entry> void enter(Columns::value_type& column, const Entry& x) const {
-    Numbers& numbers = std::get<Numbers>(column);
-    if (!std::holds_alternative<std::vector<Entry>>(numbers)) numbers = std::vector<Entry>();
-    std::get<std::vector<Entry>>(numbers).push_back(x);
-  }
-
   Group table_;
   bool clouds_, exact_;
-  std::vector<SeriesEntry (*)(const Moment&)> entries_;
-  Columns values_;
+  std::vector<const SeriesColumn*> columns_;
+  std::vector<NumberColumn> values_;
   std::size_t rows_ = 0;
   NumberColumn mass_{exact_}, x_{exact_}, v_{exact_};
   std::vector<std::uint64_t> index_;

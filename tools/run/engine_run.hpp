@@ -37,7 +37,7 @@ class EngineRun final : public SceneRun {
         engine_(engine()), plan_(scene),
         measurements_(scene, *engine_, plan_, sink.for_file() && scene.run.precision != Precision::double_),
         guards_(scene, *engine_), start_(round_(scene.run.start.text), scene.run.start.text), time_(start_),
-        end_(round_(scene.run.until.text)) {
+        end_(round_(scene.run.until.text), scene.run.until.text) {
     if (options_.interrupt != nullptr) options_.interrupt->heed();
     observe({});
     if (StateSource* from = sink.loaded_from()) load(*from);
@@ -132,7 +132,7 @@ class EngineRun final : public SceneRun {
       time_ = time, at_collision_ = false;
     else
       stand_at_last_collision();
-    if (status != Status::reached || !(time.exact < end_)) end_with(status);
+    if (status != Status::reached || !(time.exact < end_.exact)) end_with(status);
   }
 
   // The time to advance to.
@@ -175,8 +175,7 @@ class EngineRun final : public SceneRun {
   RunGuards guards_;
   std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();
 
-  RunTime start_, time_;
-  Number end_;
+  RunTime start_, time_, end_;
   bool at_collision_ = false;    // the state is the one right after the last collision
   std::unique_ptr<Moment> now_;  // for who reads the run, or of the last sample of a run for statistics
   std::optional<Error> failed_;

@@ -15,9 +15,9 @@
 #include "cradle/core/engine/status.hpp"
 #include "cradle/core/observe/histograms.hpp"
 #include "cradle/core/parallel/workers.hpp"
-#include "cradle/tools/engines/moment.hpp"
 #include "cradle/tools/engines/number.hpp"
 #include "cradle/tools/engines/reported.hpp"
+#include "cradle/tools/engines/run_state.hpp"
 #include "cradle/tools/scene/scene.hpp"
 
 namespace cradle::tools {
@@ -77,7 +77,7 @@ class AnyEngine {
   virtual long double epsilon() const = 0;  // of the type
 
   /// At a time that is not before the last collision; `at_collision`: right after that one.
-  virtual std::unique_ptr<Moment> moment(const RunTime& time, bool at_collision = false) = 0;
+  virtual std::unique_ptr<RunState> state_at(const RunTime& time, bool at_collision = false) = 0;
 
   /// Checks all particles at such a time.
   virtual CheckedParticles check(const Number& time) = 0;
@@ -87,7 +87,7 @@ class AnyEngine {
   virtual void count_collisions(const Counting& counting, const OctaveBins& bins, bool flights) = 0;
   /// Free flights, pair flights, closing speeds, dissipative ones, collisions per particle.
   virtual std::array<std::vector<std::uint64_t>, 5> counted_collisions() = 0;
-  /// Tags every k-th particle, for Moment::tagged; returns how many these are.
+  /// Tags every k-th particle, for RunState::tagged; returns how many these are.
   virtual std::size_t tag(ParticleIndex every) = 0;
 
   virtual void save(StateSink& to) const = 0;

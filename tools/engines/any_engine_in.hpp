@@ -12,8 +12,8 @@
 
 #include "cradle/tools/engines/any_engine.hpp"
 #include "cradle/tools/engines/engine_of.hpp"
-#include "cradle/tools/engines/moment_in.hpp"
 #include "cradle/tools/engines/numbers_in.hpp"
+#include "cradle/tools/engines/run_state_in.hpp"
 
 namespace cradle::tools {
 
@@ -69,8 +69,8 @@ template <Real T> class AnyEngineIn final : public AnyEngine {
   }
   long double epsilon() const override { return from_text<long double>(to_text(T(std::numeric_limits<T>::epsilon()))); }
 
-  std::unique_ptr<Moment> moment(const RunTime& time, bool at_collision) override {
-    return std::make_unique<MomentIn<T>>(run_, time, at_collision);
+  std::unique_ptr<RunState> state_at(const RunTime& time, bool at_collision) override {
+    return std::make_unique<RunStateIn<T>>(run_, time, at_collision);
   }
 
   CheckedParticles check(const Number& at) override {

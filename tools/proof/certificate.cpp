@@ -16,11 +16,11 @@ namespace cradle::tools {
 
 namespace {
 
-struct Question {
+struct CheckText {
   Check type;
   const char* text;
 };
-constexpr Question questions[] = {
+constexpr CheckText check_texts[] = {
     {Check::neighbours, "those that meet are neighbours"},
     {Check::closing, "they approach each other: the second (closing speed) exceeds the first"},
     {Check::later, "they meet after the last collision of either: the second time exceeds the first"},
@@ -31,7 +31,7 @@ constexpr Question questions[] = {
     {Check::reaches, "it falls on the wall: the square of its speed there, the second, exceeds the first"},
     {Check::turns, "the gap stays open between two collisions under gravity: the second exceeds the first"},
 };
-static_assert(rows_in_order(questions));
+static_assert(rows_in_order(check_texts));
 
 std::string near(const std::string& number) { return number.size() > 24 ? number.substr(0, 24) + "..." : number; }
 
@@ -85,7 +85,7 @@ std::string doubt_text(const ReportedDoubt& d) {
     where += d.left == d.right ? fmt::format(", particle {}", d.left)
                                : fmt::format(", particles {} and {}", d.left, d.right);
   std::string text = fmt::format("{}: {} whether {}", where, d.refuted ? "it is not so" : "open",
-                                 questions[static_cast<std::size_t>(d.check)].text);
+                                 check_texts[static_cast<std::size_t>(d.check)].text);
   if (d.check != Check::neighbours)
     text += fmt::format(" ({}; {}; known to {:.2g})", near(d.first), near(d.second), d.width);
   return text;

@@ -51,9 +51,9 @@ class AverageMeasurement {
 
   explicit AverageMeasurement(const Measured& of) : scene_(of.scene), averages_(time_averages(of.scene, of.samples)) {}
 
-  void find(const Moment& now, const Stopped& stopped) { now.find(averages_, stopped); }
-  void record(const Moment&, const Due&, TableSink&) { averages_.add_found(); }
-  void finish(const Moment&, TableSink& put) {
+  void find(const RunState& now, const Stopped& stopped) { now.find(averages_, stopped); }
+  void record(const RunState&, const Due&, TableSink&) { averages_.add_found(); }
+  void finish(const RunState&, TableSink& put) {
     if (averages_.samples() == 0 || !(put.for_file() || averages_.complete())) return;
     Group table = std::move(average_tables(scene_).front());
     const std::vector<TimeAverages::InBin> bins = averages_.averages();

@@ -42,11 +42,11 @@ class CorrelationMeasurement {
         tagged_(of.engine.tag(static_cast<ParticleIndex>(of.scene.output.correlations.tag_every))),
         correlator_(checked(), longest_lag(of.scene)) {}
 
-  void record(const Moment& now, const Due&, TableSink&) {
+  void record(const RunState& now, const Due&, TableSink&) {
     const TaggedMotion motion = now.tagged();
     correlator_.add(motion.displacement, motion.velocity);
   }
-  void finish(const Moment&, TableSink& put) {
+  void finish(const RunState&, TableSink& put) {
     if (correlator_.samples() == 0 || !(put.for_file() || correlator_.samples() == times_)) return;
     Group table = std::move(correlation_tables(scene_).front());
     std::vector<double> displacement, of_displacement, velocity, of_velocity;

@@ -47,7 +47,7 @@ class EventMeasurement {
   void put_rows(TableSink& put) {
     if (rows_ > 0) put.add(taken_rows());
   }
-  void finish(const Moment& now, TableSink& put) {
+  void finish(const RunState& now, TableSink& put) {
     put.add(taken_rows());  // the table is there even without a collision
     put.add(initial_rows(now));
   }
@@ -69,17 +69,17 @@ class EventMeasurement {
         {}};
   }
 
-  Recorded initial_rows(const Moment& now) const {
+  Recorded initial_rows(const RunState& now) const {
     const auto [first, last] = now.after_last_collision()->range();
     std::vector<std::uint64_t> index;
     for (ParticleIndex particle = first; particle <= last; ++particle)
       index.push_back(static_cast<std::uint64_t>(particle));
-    const auto column = [&, first = first, last = last](Moment::Column which) {
+    const auto column = [&, first = first, last = last](RunState::Column which) {
       NumberColumn numbers(exact_);
       for (const Number& x : now.at_start(which, first, last)) numbers.push_back(x);
       return numbers;
     };
-    using enum Moment::Column;
+    using enum RunState::Column;
     return {{"initial",
              {},
              {{"index", "1", "number of the particle, from the left", {}},

@@ -65,13 +65,13 @@ class HistogramMeasurement {
                                wanted("free_flight") || wanted("pair_flight") || wanted("collisions_per_particle"));
   }
 
-  void record(const Moment& now, const Due&, TableSink&) {
-    for (const double gap : now.column(Moment::Column::gap)) gaps_.add(gap);
+  void record(const RunState& now, const Due&, TableSink&) {
+    for (const double gap : now.column(RunState::Column::gap)) gaps_.add(gap);
     if (wanted("cluster"))
       now.for_each_cluster(*scene_.output.counting.cluster_gap,
                            [&](std::size_t particles) { clusters_.add(static_cast<double>(particles)); });
   }
-  void finish(const Moment& now, TableSink& put) {
+  void finish(const RunState& now, TableSink& put) {
     if (!put.for_file() && now.time.exact < rounding(scene_)(scene_.output.counting.until.text)) return;
     std::vector<Group> tables = histogram_tables(scene_);
     auto table = tables.begin();

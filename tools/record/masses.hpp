@@ -20,7 +20,7 @@ class MassMeasurement {
 
   explicit MassMeasurement(const Measured&) {}
 
-  void record(const Moment& now, const Due&, TableSink& put) {
+  void record(const RunState& now, const Due&, TableSink& put) {
     const double least = now.least_mass();
     std::vector<std::uint64_t> clusters = now.mass_distribution();
     std::vector<double> from;

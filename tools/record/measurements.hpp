@@ -57,19 +57,19 @@ template <class... Each> class MeasurementsOf<MeasurementList<Each...>> {
     return need_particles;
   }
   bool series_is_due() const { return due_.front().sample; }
-  void find(const Moment& now, const Stopped& stopped) {
+  void find(const RunState& now, const Stopped& stopped) {
     each([&](auto& m, std::size_t row) {
       if constexpr (requires { m.find(now, stopped); })
         if (due_[row]) m.find(now, stopped);
     });
   }
-  void record(const Moment& now, TableSink& put) {
+  void record(const RunState& now, TableSink& put) {
     each([&](auto& m, std::size_t row) {
       if constexpr (requires { m.record(now, due_[row], put); })
         if (due_[row]) m.record(now, due_[row], put);
     });
   }
-  void record_last(const Moment& now, TableSink& put) {
+  void record_last(const RunState& now, TableSink& put) {
     each([&](auto& m, std::size_t) {
       if constexpr (requires { m.record_last(now, put); }) m.record_last(now, put);
     });
@@ -100,7 +100,7 @@ template <class... Each> class MeasurementsOf<MeasurementList<Each...>> {
       if constexpr (requires { m.put_rows(put); }) m.put_rows(put);
     });
   }
-  Summary finish(const Moment& now, TableSink& put) {
+  Summary finish(const RunState& now, TableSink& put) {
     Summary summary;
     each([&](auto& m, std::size_t) {
       if constexpr (requires { m.finish(now, put); }) m.finish(now, put);

@@ -36,8 +36,8 @@ template <auto wanted, auto make, Group (*table)(const Scene&)> class PlaceMeasu
       : scene_(of.scene), measure_(make(scene_)), table_(table(scene_)),
         means_(table_.columns.front().rows(), std::max<std::size_t>(of.samples, 1)) {}
 
-  void find(const Moment& now, const Stopped& stopped) { found_ = now.measured(measure_, stopped); }
-  void record(const Moment&, const Due& due, TableSink& put) {
+  void find(const RunState& now, const Stopped& stopped) { found_ = now.measured(measure_, stopped); }
+  void record(const RunState&, const Due& due, TableSink& put) {
     if (due.sample) means_.add(found_);
     if (!due.table) return;
     Group at_time = table_;
@@ -46,7 +46,7 @@ template <auto wanted, auto make, Group (*table)(const Scene&)> class PlaceMeasu
     at_time.attributes = {{"time", *due.table}};
     put.add(std::move(at_time));
   }
-  void finish(const Moment&, TableSink& put) {
+  void finish(const RunState&, TableSink& put) {
     if (means_.samples() == 0 || !(put.for_file() || means_.complete())) return;
     Group average = std::move(averages(scene_).front());
     const std::vector<BatchMean> all = means_.means();

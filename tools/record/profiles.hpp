@@ -39,10 +39,10 @@ class ProfileMeasurement {
 
   explicit ProfileMeasurement(const Measured& of) : scene_(of.scene) {}
 
-  void find(const Moment& now, const Stopped& stopped) {
+  void find(const RunState& now, const Stopped& stopped) {
     found_ = now.profile(range(now), scene_.output.profiles.bins, stopped);
   }
-  void record(const Moment& now, const Due&, TableSink& put) {
+  void record(const RunState& now, const Due&, TableSink& put) {
     Group table =
         filled(profile_table(scene_), std::move(found_.x), std::move(found_.velocity), std::move(found_.density),
                std::move(found_.mass_density), std::move(found_.temperature), std::move(found_.density_right),
@@ -55,7 +55,7 @@ class ProfileMeasurement {
   static auto state(auto& self) { return std::tie(self.written_); }
 
  private:
-  BinRange range(const Moment& now) const {
+  BinRange range(const RunState& now) const {
     BinRange range{};
     if (const auto& wanted = scene_.output.profiles.range; !wanted.empty()) {
       range = {wanted[0].value, wanted[1].value};
@@ -64,7 +64,7 @@ class ProfileMeasurement {
     } else if (const SampledState& state = now.state(); state.front_left) {
       range = {state.front_left->value, state.front_right->value};
     } else {
-      const std::vector<double> x = now.column(Moment::Column::x);
+      const std::vector<double> x = now.column(RunState::Column::x);
       range = {x.front(), x.back()};
     }
     if (!(range.from < range.to)) range.to = range.from + 1;  // all particles at one place: the range has length 1

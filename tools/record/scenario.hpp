@@ -41,11 +41,11 @@ class ScenarioMeasurement {
 
   void made(const Counts& now) { merges_ = now.merges; }
   void collision(const ObservedCollision& c) { watch_.collision(c.left, c.right, c.time, merges_); }
-  void record(const Moment& now, const Due&, TableSink& put) { record_last(now, put); }
-  void record_last(const Moment& now, TableSink&) {
+  void record(const RunState& now, const Due&, TableSink& put) { record_last(now, put); }
+  void record_last(const RunState& now, TableSink&) {
     if (clouds_) now.sample(watch_);
   }
-  void finish(const Moment&, TableSink& put) {
+  void finish(const RunState&, TableSink& put) {
     found_ = scenario_numbers(watch_.result(merges_));
     put.add(Group{"scenario", {found_.begin(), found_.end()}, {}});
   }

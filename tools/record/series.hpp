@@ -1,5 +1,5 @@
 // The time series. Its columns are one list: a row gives a column's name, unit, meaning, the scenes that have it, and
-// how to fill it from a moment of the run. To add a column, add a row.
+// how to fill it from the state of the run. To add a column, add a row.
 #pragma once
 
 #include <cstdint>
@@ -21,12 +21,12 @@ enum class Holds { numbers, doubles, whole };
 struct SeriesColumn {
   const char *name, *unit, *text;
   bool (*when)(const Scene&);
-  Number (*at)(const Moment&);
+  Number (*at)(const RunState&);
   Holds holds = Holds::numbers;
 };
 
 inline const std::vector<SeriesColumn>& series_columns() {
-  using At = const Moment&;
+  using At = const RunState&;
   static constexpr auto plain = [](auto x) { return Number{static_cast<double>(x), nullptr}; };
   static const Number nan{none(), nullptr};
   constexpr auto always = [](const Scene&) { return true; };
@@ -155,8 +155,8 @@ class SeriesMeasurement {
     for (NumberColumn* column : {&mass_, &x_, &v_}) taken(*column);
     index_.clear();
   }
-  void record(const Moment& now, const Due&, TableSink& put) { record_last(now, put); }
-  void record_last(const Moment& now, TableSink&) {
+  void record(const RunState& now, const Due&, TableSink& put) { record_last(now, put); }
+  void record_last(const RunState& now, TableSink&) {
     for (std::size_t k = 0; k < values_.size(); ++k) values_[k].push_back(columns_[k]->at(now));
     ++rows_;
     if (!clouds_) return;

@@ -19,22 +19,22 @@ class SnapshotMeasurement {
 
   explicit SnapshotMeasurement(const Measured& of) : exact_(of.exact) {}
 
-  void record(const Moment& now, const Due&, TableSink& put) { put.add(rows(now)); }
-  void record_last(const Moment& now, TableSink& put) {
+  void record(const RunState& now, const Due&, TableSink& put) { put.add(rows(now)); }
+  void record_last(const RunState& now, TableSink& put) {
     if (!put.for_statistics()) put.add(rows(*now.after_last_collision()));
   }
 
   static auto state(auto& self) { return std::tie(self.written_); }
 
  private:
-  Recorded rows(const Moment& now) {
-    const auto column = [&](Moment::Column which) {
+  Recorded rows(const RunState& now) {
+    const auto column = [&](RunState::Column which) {
       NumberColumn numbers(exact_);
       numbers.values = now.column(which);
       if (exact_) numbers.texts = now.column_text(which);
       return numbers;
     };
-    using enum Moment::Column;
+    using enum RunState::Column;
     Recorded rows{{numbered(row.name, written_),
                    {},
                    {{"x", "l", "position", {}},

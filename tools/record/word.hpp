@@ -37,7 +37,7 @@ class WordMeasurement {
     if (!followed_->follows()) left_at_ = c.time;
   }
 
-  void finish(const Moment&, TableSink& put) { put.add(table()); }
+  void finish(const RunState&, TableSink& put) { put.add(table()); }
 
   static auto state(auto& self) { return std::tie(self.made_, self.followed_, self.left_at_); }
 

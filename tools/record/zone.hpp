@@ -70,9 +70,9 @@ class ZoneMeasurement {
 
   explicit ZoneMeasurement(const Measured& of) : scene_(of.scene), zone_(zone_average(of.scene)) {}
 
-  void find(const Moment& now, const Stopped& stopped) { now.find(zone_, stopped); }
-  void record(const Moment&, const Due&, TableSink&) { zone_.add_found(); }
-  void finish(const Moment&, TableSink& put) {
+  void find(const RunState& now, const Stopped& stopped) { now.find(zone_, stopped); }
+  void record(const RunState&, const Due&, TableSink&) { zone_.add_found(); }
+  void finish(const RunState&, TableSink& put) {
     const double single = 2 * std::sqrt(scene_.law.loss.value);  // u_crit of single particles
     width_ = zone_.width(scene_.initial.speed.value, single);
     Group table = std::move(zone_tables(scene_).front());

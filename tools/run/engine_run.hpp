@@ -71,7 +71,7 @@ class EngineRun final : public SceneRun {
 
   const Counts& counts() const override { return engine_->counts(); }
   Number time() const override { return time_.meant; }
-  Number energy() const override { return engine_->moment(time_, at_collision_)->state().energy; }
+  Number energy() const override { return engine_->state_at(time_, at_collision_)->state().energy; }
   std::vector<double> column(Column which) override { return now().column(which); }
   std::vector<std::string> column_text(Column which) override { return now().column_text(which); }
   const std::vector<ParticleIndex>& index() override { return now().index(); }
@@ -138,8 +138,8 @@ class EngineRun final : public SceneRun {
   // The time to advance to.
   RunTime checked(const Decimal& until) const;
 
-  const Moment& now() {
-    if (!now_) now_ = engine_->moment(time_, at_collision_);
+  const RunState& now() {
+    if (!now_) now_ = engine_->state_at(time_, at_collision_);
     return *now_;
   }
 
@@ -156,7 +156,7 @@ class EngineRun final : public SceneRun {
   // Returns false if a signal has stopped a loop over rows, which can be very long; then nothing of this time is
   // recorded yet.
   bool sample_at(const Number& time);
-  void notify_observer(const Moment& now, bool at_collision) {
+  void notify_observer(const RunState& now, bool at_collision) {
     if (options_.observer != nullptr) options_.observer->sample(run_sample(scene_, plan_, *engine_, now, at_collision));
   }
 
@@ -176,8 +176,8 @@ class EngineRun final : public SceneRun {
   std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();
 
   RunTime start_, time_, end_;
-  bool at_collision_ = false;    // the state is the one right after the last collision
-  std::unique_ptr<Moment> now_;  // for who reads the run, or of the last sample of a run for statistics
+  bool at_collision_ = false;      // the state is the one right after the last collision
+  std::unique_ptr<RunState> now_;  // for who reads the run, or of the last sample of a run for statistics
   std::optional<Error> failed_;
 };
 

@@ -196,7 +196,7 @@ RunEnd end_of(Status status, bool order_lost) {
 // together by eps sqrt(1 + C/N), and change the energy by twice that. If the chain holds closing speeds, the error is
 // relative to the present ones; if it holds velocities, to those at the start. Where collisions make errors grow, only
 // an engine that watches them knows by how much. After an uncertain one no digit is right, unless nothing is changed.
-double energy_digits(const Scene& scene, const AnyEngine& engine, const Moment& now) {
+double energy_digits(const Scene& scene, const AnyEngine& engine, const RunState& now) {
   const double at_start = now.energy_at_start().value, at_end = now.state().energy.value;
   if (engine.account().uncertain && at_start != at_end) return 0;
   const auto active = static_cast<double>(std::max<ParticleIndex>(engine.collided_particles(), 1));
@@ -251,7 +251,7 @@ std::string guard_message(const ReportedGuard& g, const ReportedAccount& account
                   "before; if it stops here again, please report the scene";
 }
 
-RunOutcome outcome_of(const Scene& scene, const AnyEngine& engine, const Moment& now, Status status) {
+RunOutcome outcome_of(const Scene& scene, const AnyEngine& engine, const RunState& now, Status status) {
   RunOutcome outcome;
   outcome.end = end_of(status, engine.account().order_lost > 0);
   if (status == Status::collapsed) {
@@ -265,7 +265,7 @@ RunOutcome outcome_of(const Scene& scene, const AnyEngine& engine, const Moment&
   return outcome;
 }
 
-RunEnding::RunEnding(const Scene& scene, const AnyEngine& engine, const Moment& now, Status status)
+RunEnding::RunEnding(const Scene& scene, const AnyEngine& engine, const RunState& now, Status status)
     : outcome(outcome_of(scene, engine, now, status)) {
   ReportedAccount account = engine.account();
   const auto found = status == Status::collapsed ? std::optional(engine.collapse()) : std::nullopt;

@@ -12,14 +12,14 @@
 namespace cradle::tools {
 
 /// How a run ended, without texts.
-RunOutcome outcome_of(const Scene& scene, const AnyEngine& engine, const Moment& now, Status status);
+RunOutcome outcome_of(const Scene& scene, const AnyEngine& engine, const RunState& now, Status status);
 
 struct RunEnding {
   RunOutcome outcome;
   std::vector<Attribute> attributes;
   std::vector<Group> collapse;  // tables
 
-  RunEnding(const Scene& scene, const AnyEngine& engine, const Moment& now, Status status);
+  RunEnding(const Scene& scene, const AnyEngine& engine, const RunState& now, Status status);
 };
 
 /// The message of a guard that stops a run. What positions may not have resolved is not the machine's fault.

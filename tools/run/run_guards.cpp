@@ -16,7 +16,7 @@ constexpr std::uint64_t most_guarded = 1 << 22;    // with more particles a chec
 
 }  // namespace
 
-void RunGuards::check(const Moment& now, bool at_end) {
+void RunGuards::check(const RunState& now, bool at_end) {
   require_between_walls(now);
   const std::uint64_t collisions = engine_.counts().collisions;
   const auto active = static_cast<std::uint64_t>(std::max<ParticleIndex>(engine_.collided_particles(), 16));
@@ -33,11 +33,11 @@ void RunGuards::check_loaded(const Number& time) {
   checked_at_ = before;
 }
 
-void RunGuards::require_between_walls(const Moment& now) const {
+void RunGuards::require_between_walls(const RunState& now) const {
   if (const auto found = now.beyond_a_wall()) stop(*found);
 }
 
-void RunGuards::require_held(const Moment& now, bool of_particles) const {
+void RunGuards::require_held(const RunState& now, bool of_particles) const {
   if (const char* what = now.beyond_range(of_particles))
     throw Error({scene_.name, 0, ""}, fmt::format("{} beyond the range of {}", what, precision_name(scene_.run)),
                 "at t = " + now.time.exact.text(), "give an earlier run.until, smaller speeds or a wider run.precision",

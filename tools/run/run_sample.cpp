@@ -2,7 +2,7 @@
 
 namespace cradle::tools {
 
-RunSample run_sample(const Scene& scene, const Schedule& plan, const AnyEngine& engine, const Moment& now,
+RunSample run_sample(const Scene& scene, const Schedule& plan, const AnyEngine& engine, const RunState& now,
                      bool at_collision) {
   const SampledState& state = now.state();
   const Number& time = now.time.exact;
@@ -22,7 +22,7 @@ RunSample run_sample(const Scene& scene, const Schedule& plan, const AnyEngine& 
                    .front_right = text(state.front_right),
                    .particles = {},
                    .walls = {wall(state.walls[0]), wall(state.walls[1])}};
-  using enum Moment::Column;
+  using enum RunState::Column;
   if (!at_collision && plan.snapshots().hold(time))
     sample.particles = {now.range().first,  now.range().second, now.index(),
                         now.column_text(x), now.column_text(v), now.column_text(m)};

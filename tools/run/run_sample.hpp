@@ -8,7 +8,7 @@
 namespace cradle::tools {
 
 /// `at_collision`: the run ends at this time, with a collision.
-RunSample run_sample(const Scene& scene, const Schedule& plan, const AnyEngine& engine, const Moment& now,
+RunSample run_sample(const Scene& scene, const Schedule& plan, const AnyEngine& engine, const RunState& now,
                      bool at_collision);
 
 }  // namespace cradle::tools

@@ -59,8 +59,8 @@ std::unique_ptr<AnyEngine> EngineRun::engine() {
 }
 
 bool EngineRun::sample_at(const Number& time) {
-  std::unique_ptr<Moment> moment = engine_->moment(plan_.meant(time));
-  const Moment& now = *moment;
+  std::unique_ptr<RunState> state = engine_->state_at(plan_.meant(time));
+  const RunState& now = *state;
   if (measurements_.come_to(time)) guards_.require_held(now, true);
   try {
     measurements_.find(now, [this] { return stopped(); });
@@ -77,15 +77,15 @@ bool EngineRun::sample_at(const Number& time) {
     keep(time);
   else if (measurements_.many_rows())
     put_rows();
-  if (sink_.for_statistics()) now_ = std::move(moment);
+  if (sink_.for_statistics()) now_ = std::move(state);
   return true;
 }
 
 // Of a run for statistics.
 void EngineRun::end_in_numbers(Status status) {
   const bool reached = status == Status::reached;  // with a sample at the end
-  if (!reached) now_ = engine_->moment(engine_->last_collision_time());
-  const Moment& now = *now_;
+  if (!reached) now_ = engine_->state_at(engine_->last_collision_time());
+  const RunState& now = *now_;
   if (!reached) {
     guards_.require_between_walls(now);
     guards_.require_held(now, false);
@@ -101,8 +101,8 @@ void EngineRun::end_with(Status status) {
   const bool reached = status == Status::reached, interrupted = status == Status::interrupted;
   const Number end = reached ? plan_.last() : engine_->last_collision_time();
   if (reached || interrupted) keep(end, reached ? RunIs::over : RunIs::interrupted);
-  const std::unique_ptr<Moment> moment = engine_->moment(reached ? plan_.meant(end) : RunTime(end));
-  const Moment& now = *moment;
+  const std::unique_ptr<RunState> state = engine_->state_at(reached ? plan_.meant(end) : RunTime(end));
+  const RunState& now = *state;
   if (!reached && !(interrupted && sink_.for_file())) {  // its last state
     guards_.require_between_walls(now);
     notify_observer(now, true);

@@ -19,7 +19,7 @@ namespace cradle::tools {
 /// has one precision per process: a caller with several runs must call set_digits for a run before it uses that run.
 class SceneRun {
  public:
-  using Column = Moment::Column;  // of the particles, as in snapshots
+  using Column = RunState::Column;  // of the particles, as in snapshots
 
   explicit SceneRun(const Scene& scene) : scene_(scene) {}
   SceneRun(const SceneRun&) = delete;

@@ -1,4 +1,4 @@
-// The state of a run at one time in one scalar type: what code for all types requires of it (moment.hpp).
+// The state of a run at one time in one scalar type: what code for all types requires of it (run_state.hpp).
 #pragma once
 
 #include <algorithm>
@@ -14,12 +14,12 @@
 #include "cradle/core/observe/configuration_statistics.hpp"
 #include "cradle/core/observe/correlations.hpp"
 #include "cradle/tools/engines/engine_of.hpp"
-#include "cradle/tools/engines/moment.hpp"
 #include "cradle/tools/engines/numbers_in.hpp"
+#include "cradle/tools/engines/run_state.hpp"
 
 namespace cradle::tools {
 
-/// What a moment needs of a run.
+/// What a state needs of its run.
 template <Real T> struct RunIn {
   const Scene& scene;
   std::shared_ptr<const cradle::Particles<T>> particles;
@@ -28,10 +28,10 @@ template <Real T> struct RunIn {
   std::optional<TaggedParticles<T>> tagged = {};
 };
 
-template <Real T> class MomentIn final : public Moment {
+template <Real T> class RunStateIn final : public RunState {
  public:
-  MomentIn(RunIn<T>& of, const RunTime& at, bool at_collision)
-      : Moment(at), of_(of), run_(*of.engine), particles_(*of.particles), time_(exact_in<T>(at.exact)),
+  RunStateIn(RunIn<T>& of, const RunTime& at, bool at_collision)
+      : RunState(at), of_(of), run_(*of.engine), particles_(*of.particles), time_(exact_in<T>(at.exact)),
         elapsed_(time_ - of.start), at_collision_(at_collision) {}
 
   const SampledState& state() const override {
@@ -69,7 +69,9 @@ template <Real T> class MomentIn final : public Moment {
     if (c.closure_speed) all.emplace_back("closure_speed", number_of(*c.closure_speed));
     return all;
   }
-  std::unique_ptr<Moment> after_last_collision() const override { return std::make_unique<MomentIn>(of_, time, true); }
+  std::unique_ptr<RunState> after_last_collision() const override {
+    return std::make_unique<RunStateIn>(of_, time, true);
+  }
 
   std::vector<Number> at_start(Column which, ParticleIndex first, ParticleIndex last) const override {
     std::vector<Number> all;

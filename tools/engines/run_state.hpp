@@ -51,14 +51,14 @@ struct TaggedMotion {
   std::vector<double> displacement, velocity;
 };
 
-class Moment {
+class RunState {
  public:
   enum class Column { x, v, m, gap, closing_speed };
 
-  explicit Moment(const RunTime& at) : time(at) {}
-  Moment(const Moment&) = delete;
-  Moment& operator=(const Moment&) = delete;
-  virtual ~Moment() = default;
+  explicit RunState(const RunTime& at) : time(at) {}
+  RunState(const RunState&) = delete;
+  RunState& operator=(const RunState&) = delete;
+  virtual ~RunState() = default;
 
   const RunTime time;
 
@@ -72,7 +72,7 @@ class Moment {
   /// The least and the median gap, and what closure misses, by name.
   virtual std::vector<std::pair<std::string, Number>> gap_numbers() const = 0;
   /// The state right after the last collision, of a run that ends with it.
-  virtual std::unique_ptr<Moment> after_last_collision() const = 0;
+  virtual std::unique_ptr<RunState> after_last_collision() const = 0;
 
   /// What a column was at the start of the run; the gap behind the last particle of a line is NaN.
   virtual std::vector<Number> at_start(Column which, ParticleIndex first, ParticleIndex last) const = 0;

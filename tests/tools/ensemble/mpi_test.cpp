@@ -42,13 +42,14 @@ class Mpi : public Ensembles {
     return line + "; do until [ -e " + file +
            " ] || { [ $f -nt stamp ] && [ $(stat -c %s $f) -ge 50000 ]; }; do sleep 0.01; done; done; ";
   }
-  // An ensemble that is stopped in time by what `then` does: of as many replicas as that takes on this machine. Returns
-  // how it ended, and those replicas.
-  std::pair<Printed, std::string> stopped_job(int ranks, const std::string& file, const std::string& then) const {
-    for (std::uint64_t replicas = 6000;; replicas *= 4) {
+  // An ensemble that is stopped in time by what `then` does: of as many replicas as that takes on this machine, and no
+  // fewer than `replicas`. Returns how it ended, and those replicas.
+  std::pair<Printed, std::uint64_t> stopped_job(int ranks, const std::string& file, const std::string& then,
+                                                std::uint64_t replicas = 6000) const {
+    for (;; replicas *= 4) {
       const std::string ensemble = fmt::format("ensemble wet.toml --replicas {} --threads 1 -o {}", replicas, file);
       const Printed stopped = shell(start(ranks, ensemble, file) + then);
-      if (!exists(file)) return {stopped, std::to_string(replicas)};
+      if (!exists(file)) return {stopped, replicas};
       std::filesystem::remove(folder / file);
     }
   }
@@ -76,14 +77,15 @@ TEST_F(Mpi, FewerReplicasThanRanks) {
 }
 
 TEST_F(Mpi, KilledJobIsContinuedOnAnyNumberOfRanks) {
-  std::string replicas;
+  // Never fewer than of the job before: what that one has finished stays.
+  std::uint64_t replicas = 6000;
   for (const int rank : {0, 1, 2}) {  // among them rank 0
-    const auto [killed, wanted] =
-        stopped_job(3, "killed.h5", fmt::format("kill -9 $(ps -o pid= --ppid $pid | sed -n {}p); wait $pid", rank + 1));
+    const auto [killed, wanted] = stopped_job(
+        3, "killed.h5", fmt::format("kill -9 $(ps -o pid= --ppid $pid | sed -n {}p); wait $pid", rank + 1), replicas);
     EXPECT_NE(killed.status, 0);
     replicas = wanted;
   }
-  const std::string ensemble = "ensemble wet.toml --replicas " + replicas + " -o ";
+  const std::string ensemble = fmt::format("ensemble wet.toml --replicas {} -o ", replicas);
   run(ensemble + "whole.h5");
   const Printed go_on = shell(job(2, ensemble + "killed.h5"), 0);
   EXPECT_TRUE(has(go_on.err, "killed.h5.part.2: "));
@@ -96,7 +98,7 @@ TEST_F(Mpi, SignalToOneRankStopsAllAndLosesNothing) {
       stopped_job(2, "stopped.h5", "kill -TERM $(ps -o pid= --ppid $pid | sed -n 2p); wait $pid");
   EXPECT_EQ(stopped.status, 143) << stopped.err;
   EXPECT_TRUE(has(stopped.err, "stopped.h5.part"));
-  const std::string ensemble = "ensemble wet.toml --replicas " + replicas + " -o ";
+  const std::string ensemble = fmt::format("ensemble wet.toml --replicas {} -o ", replicas);
   run(ensemble + "whole.h5");
   run(ensemble + "stopped.h5");  // without ranks
   expect_same("whole.h5", "stopped.h5");

@@ -47,7 +47,8 @@ def densest(gap, particles):
 
 def draw_structure(snapshot, units, panels):
     """Each panel is the rectangle in the one before; all distances are from one particle of the core."""
-    gap, v = snapshot["gap"], snapshot["v"]
+    v = snapshot["v"]
+    gap = snapshot["gap"][:len(v) - 1]  # of a ring not that across x = 0, which has one more
     inmost = max(CORE_PARTICLES, len(v) // CORE_SHARE)
     particle, width = densest(gap, inmost)
     x = distances(gap, particle)

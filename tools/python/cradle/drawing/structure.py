@@ -48,7 +48,7 @@ def densest(gap, particles):
 def draw_structure(snapshot, units, panels):
     """Each panel is the rectangle in the one before; all distances are from one particle of the core."""
     v = snapshot["v"]
-    gap = snapshot["gap"][:len(v) - 1]  # of a ring not that across x = 0, which has one more
+    gap = snapshot["gap"][:len(v) - 1]  # a ring has one more, across x = 0
     inmost = max(CORE_PARTICLES, len(v) // CORE_SHARE)
     particle, width = densest(gap, inmost)
     x = distances(gap, particle)

@@ -45,7 +45,7 @@ void add_running_options(Command& command, RunningOptions& options) {
   command.option("--threads", options.threads,
                  "threads to use at most, for replicas or for one run of many particles; 0: all processors; never "
                  "changes a result");
-  command.flag("--quiet", options.quiet, "no messages but errors and the collapse report");
+  command.flag("--quiet", options.quiet, "no messages but errors, the collapse report and warnings about the result");
   command.flag("--progress", options.progress,
                "report progress every ten seconds where standard error is not a terminal, instead of every minute");
 }

@@ -65,7 +65,7 @@ void print_parts(const std::vector<Difference>& found) {
       ++count;
       if (difference.size && (largest == nullptr || *difference.size > *largest->size)) largest = &difference;
     }
-    fmt::print("{}: {} differences{}\n", part, count,
+    fmt::print("{}: {} difference{}{}\n", part, count, count == 1 ? "" : "s",
                largest == nullptr
                    ? ""
                    : fmt::format(", numbers by up to {:.2g} relative ({})", *largest->size, largest->place));
@@ -79,7 +79,8 @@ Exit diff(const DiffArguments& options) {
   const bool each = options.all || found.size() <= few;
   fmt::print("{}{} numbers compared{}\n",
              found.empty() ? "no difference: "
-                           : fmt::format("{} differences{}: ", found.size(), each ? "" : " (--all lists them)"),
+                           : fmt::format("{} difference{}{}: ", found.size(), found.size() == 1 ? "" : "s",
+                                         each ? "" : " (--all lists them)"),
              numbers, tolerated > 0 ? fmt::format(", {} of them within --rtol {}", tolerated, options.rtol) : "");
   const auto scene = [](const Result& result, const std::string& file) {
     return attribute<std::string>(result.attributes, "scene", file);

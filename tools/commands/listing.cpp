@@ -48,7 +48,8 @@ std::string first_and_last(const Column& column) {
 std::string listing(const Result& result, const Group& group) {
   std::size_t rows = 0;
   for (const auto& column : group.columns) rows = std::max(rows, column.rows());
-  std::string lines = fmt::format("/{:<23} {} x {}", group.name, rows, group.columns.size());
+  std::string lines =
+      group.columns.empty() ? "/" + group.name : fmt::format("/{:<23} {} x {}", group.name, rows, group.columns.size());
   for (const auto& [name, value] : group.attributes)
     if (name != "scene") lines += fmt::format("  {} = {}", name, text(value));
   lines += '\n';

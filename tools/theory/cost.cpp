@@ -248,21 +248,18 @@ std::string expected_lines(const Scene& scene, const Cost& cost) {
     const bool endless = (loses || !floor.empty()) && !particles_merge(scene) && !stops_at_collapse(scene);
     return fmt::format(
         "collisions and time: there is no estimate for this scene{}{}\n",
-        endless ? "; where particles collapse they may have no limit" : "",
+        endless ? "; where particles collapse they may be very many" : "",
         endless && cost.floor ? fmt::format(": with {}.rest_speed they come to rest there instead", floor) : "");
   }
   const auto* after = stops_at_collapse(scene) ? "where the run stops"
                       : particles_merge(scene) ? "after which particles merge"
-                                               : "without limit after it";
+                                               : "how many follow is not known";
   std::string text = fmt::format("collisions: about {}", about(*cost.collisions));
   if (cost.collapse)
     text += fmt::format(" until inelastic collapse at about t = {}, {}", about(*cost.collapse, 3), after);
   if (cost.clustering)
     text += fmt::format(" until particles cluster at about t = {}, by Haff's law; how many follow is not known{}",
-                        about(*cost.clustering, 3),
-                        particles_merge(scene)     ? ""
-                        : stops_at_collapse(scene) ? ", until clusters collapse"
-                                                   : ": clusters collapse, and have no limit after it");
+                        about(*cost.clustering, 3), stops_at_collapse(scene) ? ", until clusters collapse" : "");
   text += '\n';
   return cost.collapse || cost.clustering ? text + end_line(scene) : text;
 }

@@ -58,6 +58,11 @@ class Runs(small.Case):
             self.assertEqual(result.outcome, "resolution exhausted")
             self.assertGreater(len(result.series.time), 2)
 
+    def test_what_the_program_says_on_the_way_is_a_warning_at_the_line_of_the_call(self):
+        with self.assertWarnsRegex(RuntimeWarning, "outside the run are left out") as caught:
+            cradle.run("fig5", {"run.until": 5}, output="said.h5")
+        self.assertEqual(caught.filename, __file__)
+
     def test_resume_goes_further(self):
         with cradle.run("fig2", set=small.SHOCK, output="further.h5") as result:
             collisions = result.series.collisions[-1]

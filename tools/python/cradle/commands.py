@@ -4,6 +4,7 @@ from __future__ import annotations
 import contextlib
 import os
 import tempfile
+import warnings
 from builtins import open as builtins_open  # hidden by ours
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Union
@@ -33,6 +34,7 @@ def run(scene: Scene, set: Settings = None, **common) -> Result:
     progress: True, False, or a function of the finished share and a line of text; by default on terminals and in
         notebooks.
     Raises Error with the program's message and status; if collisions were lost (5) its `result` is the incomplete one.
+    What the program says on the way is a RuntimeWarning: until when collisions are certain, what acts on nothing.
     """
     return compute("run", ".h5", scene, set, [], **common)
 
@@ -153,6 +155,8 @@ def called(words: list[str], output: str, threads: int | None, progress: bool | 
     result.text, result.status = call.out + call.messages, call.status
     if call.status == LOST and words[0] != "certify":
         raise Error(said, LOST, result)
+    if call.messages:
+        warnings.warn(said, RuntimeWarning, stacklevel=3 if words[0] == "resume" else 4)
     return result
 
 

@@ -51,7 +51,7 @@ def call(arguments: Sequence[str], accepted: Sequence[int] = (DONE,),
     """
     command = [find(), *map(str, arguments)]
     ours, theirs = socket.socketpair()  # for its progress (tools/support/progress.hpp)
-    extra = {"pass_fds": [theirs.fileno()], "env": os.environ | {"CRADLE_PROGRESS_FD": str(theirs.fileno())}}
+    environment = os.environ | {"CRADLE_PROGRESS_FD": str(theirs.fileno())}  # keeps progress out of the messages
     child = None
     with ours, theirs, tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err:
         try:
@@ -59,7 +59,7 @@ def call(arguments: Sequence[str], accepted: Sequence[int] = (DONE,),
             # ends it.
             with interrupts_later():
                 child = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=out, stderr=err,
-                                         start_new_session=True, **(extra if show else {}))
+                                         start_new_session=True, pass_fds=[theirs.fileno()], env=environment)
             theirs.close()
             if show:
                 with ours.makefile(encoding="utf-8", errors="replace") as lines:

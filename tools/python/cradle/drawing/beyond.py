@@ -151,7 +151,7 @@ def draw_distributions(snapshots, scale, units, panels):
         v = (snapshot["v"][particles] - np.median(snapshot["v"][particles])) / scale
         density, edges = np.histogram(v, bins=50, range=(-0.75, 0.75))
         left.stairs(density / len(v) / (edges[1] - edges[0]), edges, color=colour,
-                    label=rf"$t={snapshot['time'] / units.t:.5g}$")
+                    label=units.at(snapshot["time"]))
         gap = gap[gap > 0] / gap.mean()
         density, edges = np.histogram(gap, bins=np.geomspace(1e-3, 1e2, 41))
         right.stairs(density / len(gap) / np.diff(edges), edges, color=colour)

@@ -2,7 +2,7 @@
 Their separation grows as t^(1/3), their speed falls as t^(-1/3) (section VI). A line follows a cluster, not a side."""
 import numpy as np
 
-from .style import BLUE, GREY, ORANGE, beside, plt, power, shaded, thinned
+from .style import BLUE, GREY, ORANGE, beside, plt, shaded, thinned
 
 DECADES, BINS, FIRST = 4.3, 13, 3  # maxima in so many logarithmic bins over the last decades; the fit begins in bin 3
 ENOUGH = 20  # samples of a bin: of fewer the largest says nothing of the swing
@@ -166,7 +166,7 @@ def draw_masses(ax, masses, units):
     """The number of clusters with at least a given mass: there are too few clusters for a histogram."""
     for group, colour in shaded(thinned(masses, 6)):
         above = np.cumsum(group["clusters"][::-1].astype(float))[::-1]
-        ax.step(group["mass"], above, where="pre", color=colour, label=rf"$t={power(group['time'] / units.t)}$")
+        ax.step(group["mass"], above, where="pre", color=colour, label=units.at(group["time"]))
     ax.set(xscale="log", yscale="log", xlabel=r"mass $M\,/\,m$", ylabel="clusters heavier than $M$")
     beside(ax)
 

@@ -7,6 +7,7 @@ import numpy as np
 from .style import BLUE, GREEN, GREY, ORANGE, RED, note, power, thinned
 
 ENERGY, CLUSTERS = 0.221376226650747359, 1.32825735990448415
+FEWEST = 10   # clusters that are left, for the law of infinitely many particles to say something of these
 STRETCH = 80  # particles of the last snapshot that are shown of the velocities
 
 
@@ -30,10 +31,12 @@ def ring_of(result):
 
 
 def sticky_law(result, time):
-    """The energy per particle."""
-    _, speed, spacing = ring_of(result)
+    """The energy per particle; NaN before clusters form and after only FEWEST would be left."""
+    particles, speed, spacing = ring_of(result)
     with np.errstate(divide="ignore"):
-        return ENERGY * speed ** 2 * (speed * time / spacing) ** (-2 / 3)
+        share = (speed * time / spacing) ** (-2 / 3)
+    clusters = CLUSTERS * share
+    return np.where((clusters < 1) & (particles * clusters >= FEWEST), ENERGY * speed ** 2 * share, np.nan)
 
 
 def cooled(result):
@@ -50,10 +53,12 @@ def draw_cooling(result, theory, panels):
     series = result.means
     later, time, energy, law = cooled(result)
     merging = result.law in ("sticky", "wet")
-    axes = panels.stacked(3 if merging else 2, height=2.2, sharex=True)
-    asymptotic = law <= result.means["energy"][0] / particles
+    applies = bool(np.isfinite(law).any())
+    axes = panels.stacked(1 + applies + merging, height=2.2, sharex=True)
     axes[0].loglog(time, energy, color=BLUE, lw=1.6, label="simulation")
-    axes[0].plot(time[asymptotic], law[asymptotic], "k--", label=r"sticky gas, $0.2214\,s^2\tau^{-2/3}$")
+    if applies:
+        axes[0].plot(time, law, "k--", label=r"sticky gas, $0.2214\,s^2\tau^{-2/3}$")
+        draw_ratio(axes[1], time, energy / law)
     known = [name for name in dict.fromkeys(row[0] for row in theory.rows) if name.startswith("energy")]
     for quantity, colour in zip((name for name in known if "sticky" not in name), (ORANGE, GREEN, RED)):
         t, value = theory.curve(quantity)
@@ -61,37 +66,41 @@ def draw_cooling(result, theory, panels):
         axes[0].plot(t[shown], value[shown] / particles, ":", color=colour, lw=1.6, label=theory.equation(quantity))
     axes[0].set_ylabel(r"energy per particle $E\,/\,N$")
     axes[0].legend(loc="lower left")
-    ratio = (energy / law)[asymptotic]
-    axes[1].semilogx(time[asymptotic], ratio, color=BLUE, lw=1.6)
-    axes[1].axhline(1, color="k", ls="--")
-    axes[1].set_ylabel("simulation / sticky law")
-    if ratio.size and ratio.max() > 10:
-        axes[1].set_yscale("log")
-    else:
-        axes[1].set_ylim(bottom=0)
     if merging:
-        tau = speed * time / spacing
-        axes[2].loglog(time, 1 - series["merges"][later] / particles, color=BLUE, lw=1.6, label="simulation")
-        axes[2].plot(time[tau > 1], CLUSTERS * tau[tau > 1] ** (-2 / 3), "k--",
-                     label=r"sticky gas, $1.328\,\tau^{-2/3}$")
-        axes[2].set_ylabel(r"clusters per particle")
-        axes[2].legend(loc="lower left")
+        axes[-1].loglog(time, 1 - series["merges"][later] / particles, color=BLUE, lw=1.6, label="simulation")
+        if applies:
+            axes[-1].plot(time, CLUSTERS / ENERGY * law / speed ** 2, "k--",
+                          label=r"sticky gas, $1.328\,\tau^{-2/3}$")
+        axes[-1].set_ylabel(r"clusters per particle")
+        axes[-1].legend(loc="lower left")
     axes[-1].set_xlabel(rf"time ($t$)   ($\tau=st/a$, $s={speed:.4g}$, $a={spacing:.4g}$)")
 
 
+def draw_ratio(ax, time, ratio):
+    ax.semilogx(time, ratio, color=BLUE, lw=1.6)
+    ax.axhline(1, color="k", ls="--")
+    ax.set_ylabel("simulation / sticky law")
+    if np.nanmax(ratio) > 10:
+        ax.set_yscale("log")
+    else:
+        ax.set_ylim(bottom=0)
+
+
 def draw_field(result, panels):
-    """Velocity against position in a part of the ring: larger clusters are heavier, and velocities form a saw-tooth."""
+    """Velocity against position on the ring, or on a part of it: larger clusters are heavier, and velocities form a
+    saw-tooth."""
     snapshots = thinned(result.snapshots, 4)
     axes = panels.stacked(len(snapshots), height=1.8, sharex=True)
     last = snapshots[-1]
-    stretch = np.sort(last["x"] - last["x"].min())[min(len(last["x"]), STRETCH) - 1] or 1.0
+    whole = len(last["x"]) <= STRETCH
+    low, high = (-np.inf, np.inf) if whole else np.sort(last["x"])[[0, STRETCH - 1]]
     for ax, snapshot in zip(axes, snapshots):
-        x = snapshot["x"] - last["x"].min()
-        shown = (x >= 0) & (x <= stretch)
+        shown = (snapshot["x"] >= low) & (snapshot["x"] <= high)
         size = 6 * np.sqrt(snapshot["m"][shown] / np.median(last["m"]))
-        ax.scatter(x[shown], snapshot["v"][shown], s=np.clip(size, 0.7, 60), color=BLUE, alpha=0.7, lw=0,
-                   rasterized=True)
+        ax.scatter(snapshot["x"][shown], snapshot["v"][shown], s=np.clip(size, 4 if whole else 0.7, 60), color=BLUE,
+                   alpha=0.7, lw=0, rasterized=True)
         ax.axhline(0, color=GREY, lw=0.6, zorder=0)
         ax.set_ylabel("velocity $v$ ($l/t$)")
-        note(ax, f"$t={power(snapshot['time'])}$")
-    axes[-1].set_xlabel("position $x$ ($l$), a stretch of the ring")
+        note(ax, f"$t={power(snapshot['time'])}$, {shown.sum()} of {len(shown)}"
+                 + (" clusters" if "merges" in result.means and result.means["merges"][-1] > 0 else " particles"))
+    axes[-1].set_xlabel("position $x$ ($l$)" + ("" if whole else ", a stretch of the ring"))

@@ -82,8 +82,8 @@ def show_cooling(axes, result, time):
     """A logarithmic time axis from the first collisions, with the law of the sticky gas."""
     later, _, _, law = cooled(result)
     law = law * ring_of(result)[0]
-    shown = law <= result.series["energy"]["mean"][0]
-    axes[0].plot(time[later][shown], law[shown], "k--", lw=1, label="sticky gas")
+    if np.isfinite(law).any():
+        axes[0].plot(time[later], law, "k--", lw=1, label="sticky gas")
     axes[0].set_yscale("log")
     axes[-1].set(xscale="log", xlim=(time[later][0], time[-1]))
 
@@ -94,7 +94,7 @@ def draw_profiles(result, theory, units, panels):
     name = "mass_density" if result.law in ("wet", "sticky") and "mass_density" in profiles[0] else "density"
     for profile, colour in shaded(profiles):
         x = profile["x"] / units.x
-        band(velocity, x, profile["velocity"], units.v, colour, lw=1.1, label=rf"$t={profile['time'] / units.t:.5g}$")
+        band(velocity, x, profile["velocity"], units.v, colour, lw=1.1, label=units.at(profile["time"]))
         band(density, x, profile[name], 1 / units.x, colour, lw=1.1)
     draw_slope(velocity, profiles, theory, units)
     velocity.set_ylabel(units.mean_velocity_label())

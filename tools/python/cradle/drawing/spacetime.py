@@ -89,7 +89,7 @@ def draw_cradle(ax, snapshots, units):
             if abs(v) > 0.05 * max(np.abs(snapshot["v"]).max() / units.v, 1e-300):
                 tip = (previous + 0.7 * size, row) if v > 0 else (left - 0.7 * size, row)
                 ax.annotate("", (tip[0] + np.sign(v) * 2 * size, row), tip, arrowprops={"arrowstyle": "->", "lw": 0.9})
-    ax.set_yticks(range(len(snapshots)), [f"$t={s['time'] / units.t:.4g}$" for s in snapshots])
+    ax.set_yticks(range(len(snapshots)), [units.at(s["time"], 4) for s in snapshots])
     ax.set(xlabel="the same as single particles, which never change places (sizes not to scale)",
            ylim=(-0.7, len(snapshots) - 0.3))
     ax.tick_params(axis="y", length=0)

@@ -86,7 +86,7 @@ def draw_structure(snapshot, units, panels):
         note(ax, rf"$\bf({'abcd'[k]})$  {int(inside.sum())} particles")
     length = units.label("", r"$\,l$")
     place = snapshot["x"][particle] / units.x
-    title = (rf"$t={snapshot['time'] / units.t:.6g}$,  ${reference}={place:.6g}${length},  "
+    title = (rf"{units.at(snapshot['time'], 6)},  ${reference}={place:.6g}${length},  "
              f"smallest gap {gap.min() / units.x:.1e}{length};  rectangle: the next panel"
              + (" (dotted: drawn larger)" if dotted else ""))
     if panels.given is None:  # else it is the caller's figure

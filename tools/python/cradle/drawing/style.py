@@ -77,6 +77,11 @@ class Units:
     def energy(self):
         return self.v ** 2
 
+    def at(self, time, digits=5, name="t="):
+        """A time with its unit, for legends."""
+        unit = self.label("", r"\,l/2u_0")
+        return f"${name}{power(time / self.t, digits)}{unit}$"
+
     def label(self, plain, scaled):
         return scaled if self.rows else plain
 
@@ -152,7 +157,7 @@ def shaded(items):
 def times_of(groups, units):
     """The shades and the names of the times of snapshots or profiles, by time and in its order."""
     times = sorted({group["time"] for group in groups})
-    return dict(shaded(times)), {time: rf"$t={time / units.t:.5g}$" for time in times}
+    return dict(shaded(times)), {time: units.at(time) for time in times}
 
 
 def note(ax, text):

@@ -4,7 +4,7 @@ what was varied; of rings if that is one key or a grid of two."""
 import numpy as np
 
 from . import beyond
-from .cooling import cooled, ring_of, sticky_law
+from .cooling import cooled, sticky_law
 from .style import BLUE, GREY, ORANGE, distinct, note, plt, shade_map, shades
 from .zone import model_width
 
@@ -74,25 +74,29 @@ def label_of(point):
 def draw_cooling(result, panels):
     points = cooling_points(result)
     reference = next((p for p in points if p.law == "sticky"), None)
-    top, below = panels.stacked(2, height=2.9, sharex=True)
     others = [p for p in points if p is not reference]
     shown = others + ([reference] if reference else [])
     labels = distinct(map(label_of, shown), shown)
+    time = points[0].means["time"]
+    asymptotic = sticky_law(points[0], time)
+    applies = bool(np.isfinite(asymptotic).any())
+    top, *below = axes = panels.stacked(1 + (applies or reference is not None), height=2.9, sharex=True)
     for point, colour, label in zip(shown, [*shades(len(others)), "k"], labels):
-        _, time, energy, law = cooled(point)
+        _, at, energy, law = cooled(point)
         line = "--" if point.law == "inelastic" else "-"
-        top.loglog(time, energy, line, color=colour, label=label, zorder=3 if point is reference else 2)
+        top.loglog(at, energy, line, color=colour, label=label, zorder=3 if point is reference else 2)
         if reference is not None:
             _, seen, known, _ = cooled(reference)
-            law = np.exp(np.interp(np.log(time), np.log(seen), np.log(known), left=np.nan, right=np.nan))
-        below.loglog(time, energy / law, line, color=colour)
-    time = points[0].means["time"]
-    law = sticky_law(points[0], time)
-    shown = law < 2 * max(p.means["energy"].max() / ring_of(p)[0] for p in points)
-    top.plot(time[shown], law[shown], ":", color="k", lw=1.4, label=r"$0.2214\,s^2(st/a)^{-2/3}$")
-    below.axhline(1, color=GREY, lw=0.8, zorder=0)
+            law = np.exp(np.interp(np.log(at), np.log(seen), np.log(known), left=np.nan, right=np.nan))
+        for ax in below:
+            ax.loglog(at, energy / law, line, color=colour)
+    if applies:
+        top.plot(time, asymptotic, ":", color="k", lw=1.4, label=r"$0.2214\,s^2(st/a)^{-2/3}$")
+    for ax in below:
+        ax.axhline(1, color=GREY, lw=0.8, zorder=0)
+        ax.set_ylabel(r"$E\,/\,E_{\mathrm{sticky}}$")
     top.set_ylabel(r"energy per particle $E\,/\,N$")
-    below.set(xlabel="time ($t$)", ylabel=r"$E\,/\,E_{\mathrm{sticky}}$")
+    axes[-1].set_xlabel("time ($t$)")
     top.legend(loc="lower left")
 
 

@@ -36,11 +36,13 @@ def draw(result, panels):
     axes[0].legend(loc="lower left", ncol=3, fontsize=7)
     axes[1].plot(times, share, "o-" if len(times) <= MARKED else "-", color=ORANGE, ms=3, lw=0.8)
     axes[1].axhline(1 / len(snapshots[-1]["x"]), color=GREY, lw=0.8, ls="--", label="equal shares")
-    axes[1].set(ylabel="share of the energy\nthat one particle has", ylim=(0, 1.05))
-    axes[1].legend(loc="center right", fontsize=7)
+    axes[1].set(ylabel="share of the energy\nthat one particle has", ylim=(0, min(1.05, 1.6 * np.nanmax(share))))
+    axes[1].legend(fontsize=7)
     positive = series["energy"] > 0
     axes[2].semilogy(series["time"][positive], series["energy"][positive], color=BLUE, lw=0.8, label="energy")
     given = sum(np.asarray(series[name]) for name in given_by(series))
-    axes[2].semilogy(series["time"][given > 0], given[given > 0], color=ORANGE, lw=1.2, label="given by the walls")
+    for sign, line, label in ((1, "-", "given by the walls"), (-1, "--", "taken by the walls")):
+        if (there := sign * given > 0).any():
+            axes[2].semilogy(series["time"][there], sign * given[there], line, color=ORANGE, lw=1.2, label=label)
     axes[2].set(xlabel="time ($t$)", ylabel=r"energy ($m\,l^2/t^2$)")
-    axes[2].legend(loc="lower right", fontsize=7)
+    axes[2].legend(fontsize=7)

@@ -63,8 +63,8 @@ def draw_zone(result, units, panels):
     mass.set(ylabel=units.label(r"mass density $\rho$", r"mass density $\rho\,/\,\rho_0$"),
              xlabel=units.position_label())
     beside(velocity), beside(density)
-    begin, end = zone["from"] / units.t, zone["until"] / units.t
-    note(velocity, f"average over $t={begin:.5g}$ to ${end:.5g}$, {zone['samples']} samples")
+    note(velocity, f"average over $t={zone['from'] / units.t:.5g}$ to {units.at(zone['until'], name='')}, "
+                   f"{zone['samples']} samples")
 
 
 def draw_width(ax, measured, error, longer, model, top):

@@ -19,13 +19,13 @@ SEE = {
                 "they grow.",
     "scaling": "A straight line is a power law; the dashed one has the exponent of the theory.",
     "masses": "A straight stretch is a power law of masses; the heaviest clusters are at its lower right end.",
-    "cooling": "A flat curve in the lower panel means that the gas cools as the dashed law says.",
+    "cooling": "A flat curve of the ratio to the sticky gas means that the gas cools as the law of that gas says.",
     "field": "Each dot is a particle or cluster. With time few, heavy clusters are left, in a saw-tooth.",
     "beyond": "If the core behaves like sticky particles, the curves of different cut-offs agree.",
     "rates": "If the curves of different cut-offs have one slope, the cut-off decides how often particles collide.",
     "distributions": "The dotted line is that of gaps without any order; what lies above it is order between "
                      "neighbours.",
-    "particles": "Straight lines in logarithmic panels are geometric series: there each collision shrinks times, "
+    "particles": "Where an axis is logarithmic, straight lines are geometric series: each collision shrinks times, "
                  "speeds and gaps by the same factor.",
     "onset": "The part that collapses rises from none to all within a narrow range of particle numbers.",
     "blast": "Points on the lines agree with the exact solution for a continuous gas.",

@@ -132,7 +132,9 @@ def wall(result: Result, side: str) -> str:
 
 
 def law(result: Result) -> str:
-    """What a collision does."""
+    """What a collision of particles does; nothing is said of a single one."""
+    if 1 in (given(result, "initial", "particles"), len(result.scene.get("initial", {}).get("x", ()))):
+        return ""
     kinds = {point.law for point in result.points or [result]}
     if len(kinds) > 1:
         return f"; what a collision does is compared for several laws ({', '.join(sorted(kinds))})"

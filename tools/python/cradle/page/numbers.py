@@ -69,8 +69,8 @@ def ends(result: Result) -> Entries:
         f" · {100 * lost / (energy + lost):.4g} % lost in collisions"
     digits = result.attributes.get("energy_digits")
     known = tag("estimated" if digits is not None and digits >= 1 else "unknown")
-    about = "" if digits is None else f" about {digits:.0f} digits, from rounding and the number of collisions" \
-        if digits >= 1 else " rounding, no digits"
+    about = "" if digits is None else " rounding, no digits" if digits < 1 else \
+        f" about {count_of(round(digits), 'digit')}, from rounding and the number of collisions"
     shown = number(energy, min(12, max(1, int(digits if digits is not None else 12))))
     yield END["energy"], valued(shown, "m l^2/t^2"), f"{known}{about}{share}"
     collisions, slow = last(series, "collisions"), last(series, "collisions_below_cutoff")
@@ -160,7 +160,8 @@ def proved(result: Result) -> Entries:
             if not all(np.isfinite(float(bound)) for bound in bounds):
                 continue
             shown, right = enclosed(*bounds)
-            yield label, valued(f'<span class="digits">{shown}</span>', low.unit), f"{tag('proved')} {right} digits"
+            known = f"{tag('proved')} {count_of(right, 'digit')}"
+            yield label, valued(f'<span class="digits">{shown}</span>', low.unit), known
 
 
 def failures(result: Result, place: str = "") -> Iterator[str]:

@@ -58,11 +58,12 @@ def replicas(result: Result) -> str:
         rows = ([(int(value), text(outcomes[int(value)])) if name == "outcome" and int(value) in outcomes else
                  cell(value) for name in names for value in (table[name].values[row],)] for row in range(count))
         return sortable(count_of(count, "replica"), heads, rows)
-    columns = [np.asarray(table[name], float) for name in names[1:]]
+    names, heads = zip(*((name, head) for name, head in zip(names, heads) if name not in ("index", "outcome")))
+    columns = [np.asarray(table[name], float) for name in names]
     columns = [values[np.isfinite(values)] for values in columns]
     rows = ([(share, f"{100 * share:g} %"), *(cell(np.quantile(known, share) if known.size else np.nan)
                                               for known in columns)] for share in QUANTILES)
-    return sortable(f"quantiles of {number(count)} replicas (the file has all)", ["quantile", *heads[1:]], rows)
+    return sortable(f"quantiles of {number(count)} replicas (the file has all)", ["quantile", *heads], rows)
 
 
 def outcome_texts(table: Table) -> dict[int, str]:

@@ -24,6 +24,7 @@ template <class T> struct SavedNumber;  // exactly, as bytes (core/base/state.hp
 template <class T> inline constexpr std::string_view scalar_name = "";
 template <> inline constexpr std::string_view scalar_name<double> = "double";
 template <> inline constexpr std::string_view scalar_name<long double> = "long double";
+std::string scalar_names();  // of all types in this build, separated by commas
 
 // Returns the literal if it is a finite decimal one (1, -0.5, 2e-400); throws std::invalid_argument otherwise. It is
 // called before libraries that accept more than that.

@@ -43,7 +43,7 @@ if(Python_Development.Module_FOUND AND pybind11_FOUND)
       list(APPEND _parts ${_part}_fast)
     endif()
   endforeach()
-  set_target_properties(${_parts} cradle_steps
+  set_target_properties(${_parts} cradle_precision cradle_steps
                         PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden
                                    VISIBILITY_INLINES_HIDDEN ON)
   pybind11_add_module(cradle_module MODULE NO_EXTRAS ${CMAKE_CURRENT_SOURCE_DIR}/python/module/module.cpp)

@@ -262,7 +262,7 @@ std::string trust_table(const Scene& scene, const std::vector<Trusted>& runs) {
           "that at the start), front: digits shared with the reference at the last sample that both have, of those "
           "that the type has, 100 at most; t_c: of the collapse time. 6 digits until: the last sample up to which "
           "energy and front share that many.\nproved: until when these collisions are proved to be those of the exact "
-          "system (cradle certify).\n";
+          "system (cradle certify); -: none of them.\n";
   if (!scene.run.stop_gap && status_of_text(runs.back().outcome) == Exit::collapse)
     text += "Each run ends where its own precision has settled the collapse, after a number of collisions of its own, "
             "so that the ends are not compared: with a run.stop_gap, 1e-20 say, all of them end at the same gap and "

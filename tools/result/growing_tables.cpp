@@ -4,6 +4,8 @@
 #include <iterator>
 #include <type_traits>
 
+#include "cradle/tools/support/errors.hpp"
+
 namespace cradle::tools {
 
 namespace {

@@ -4,7 +4,11 @@
 
 #include <algorithm>
 
-#include "cradle/precision/scalars.hpp"
+#ifdef CRADLE_WITH_MPFR
+#include "cradle/precision/mpfr.hpp"
+#else
+#include "cradle/precision/bin_float.hpp"
+#endif
 #include "cradle/tools/scene/checks.hpp"
 
 namespace cradle::tools {

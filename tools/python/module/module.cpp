@@ -13,6 +13,7 @@
 #include <array>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -52,7 +53,11 @@ void observe(py::handle function, const ObservedCollision& c) {
 double restitution(py::handle function, double closing_speed) {
   const py::object result = called(function, py::float_(closing_speed));
   const double value = PyFloat_AsDouble(result.ptr());
-  if (value == -1 && PyErr_Occurred() != nullptr) throw py::error_already_set();
+  if (value == -1 && PyErr_Occurred() != nullptr) {
+    PyErr_Clear();
+    throw std::invalid_argument("restitution: not a number (found " + py::repr(result).cast<std::string>() +
+                                "): return one from 0 to 1");
+  }
   return value;
 }
 

@@ -1,6 +1,12 @@
 #include "cradle/precision/ball_text.hpp"
 
+#include <algorithm>
+#include <array>
 #include <boost/multiprecision/cpp_bin_float.hpp>
+#include <cstddef>
+#include <cstdio>
+#include <ios>
+#include <optional>
 
 #include "cradle/precision/fixed_point.hpp"
 

@@ -1,18 +1,11 @@
 #pragma once
 // Balls as readable intervals: decimals and doubles, rounded outwards, so that they contain the ball.
 
-#include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstddef>
-#include <cstdio>
-#include <ios>
 #include <limits>
-#include <optional>
 #include <string>
 
 #include "cradle/precision/ball.hpp"
-#include "cradle/precision/fixed_point.hpp"
 
 namespace cradle {
 

@@ -26,7 +26,7 @@ Exit run_study_command(const RunningOptions& options, const std::function<StudyP
       *processes);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
   if (processes->rank() != 0) return end.status;
-  if (!options.quiet) fmt::print("{}", end.account);
+  if (!options.quiet) notify(end.account);
   notify(end.warning);
   if (end.status == Exit::interrupted || end.status == Exit::terminated) {
     notify(fmt::format(

@@ -1,12 +1,10 @@
 #include "cradle/precision/ball_text.hpp"
 
 #include <algorithm>
-#include <array>
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <cstddef>
 #include <cstdio>
 #include <ios>
-#include <optional>
 
 #include "cradle/precision/fixed_point.hpp"
 
@@ -29,9 +27,9 @@ std::string decimal_beside(const Wide& x, int digits, bool below) {
   return text(below ? Wide(read - unit) : Wide(read + unit));
 }
 
-// The same decimal of a sum of doubles in fixed point. There is none where the sum does not fit or is a decimal, and
-// next to a power of ten.
-std::optional<std::string> quick_decimal_beside(const std::array<double, 3>& sum, int digits, bool below) {
+}  // namespace
+
+std::optional<std::string> detail::quick_decimal_beside(const std::array<double, 3>& sum, int digits, bool below) {
   auto exact = FixedPoint::sum({sum[0], sum[1], sum[2]});
   if (!exact) return {};
   const bool negative = exact->is_negative();
@@ -49,8 +47,6 @@ std::optional<std::string> quick_decimal_beside(const std::array<double, 3>& sum
   std::snprintf(power_of_ten, sizeof power_of_ten, "e%+03d", leading->exponent);
   return (negative ? "-" : "") + text.insert(1, ".") + power_of_ten;
 }
-
-}  // namespace
 
 Enclosure<std::string> detail::decimals(const double_double& middle, double radius, int digits) {
   const auto end = [&](double by, bool below) {

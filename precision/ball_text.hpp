@@ -1,8 +1,10 @@
 #pragma once
 // Balls as readable intervals: decimals and doubles, rounded outwards, so that they contain the ball.
 
+#include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 
 #include "cradle/precision/ball.hpp"
@@ -14,6 +16,10 @@ template <class Number> struct Enclosure { Number low, high; };
 namespace detail {
 
 Enclosure<std::string> decimals(const double_double& middle, double radius, int digits);
+
+// One of these ends, a sum of doubles, in fixed point, which takes far less time. There is none where the sum does not
+// fit or is a decimal, and next to a power of ten.
+std::optional<std::string> quick_decimal_beside(const std::array<double, 3>& sum, int digits, bool below);
 
 #ifdef CRADLE_WITH_MPFR
 template <int Limbs> Enclosure<std::string> decimals(const Mpfr<Limbs>& middle, long double radius, int digits) {

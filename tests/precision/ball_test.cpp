@@ -250,11 +250,13 @@ TYPED_TEST(Balls, WhatMayBeZeroDividesNothing) {
   EXPECT_FALSE(is_positive(B(TypeParam(1), 1)));
 }
 
-// The next decimals outside, by a type that holds the ends exactly.
+// The next decimals outside, by a type that holds the ends exactly. Ends that would be rounded to the power of ten
+// above them are in its units, which are ten times as large.
 TEST(BallTest, DecimalsAreTheNextOnesOutside) {
   using Wide =
       boost::multiprecision::number<boost::multiprecision::cpp_bin_float<3300, boost::multiprecision::digit_base_2>,
                                     boost::multiprecision::et_off>;
+  std::uint64_t quick = 0;
   for (std::uint64_t number = 0; number < 4000; ++number) {
     SCOPED_TRACE(number);
     std::uint64_t index = 0;
@@ -272,16 +274,20 @@ TEST(BallTest, DecimalsAreTheNextOnesOutside) {
     const auto [low_end, high_end] = detail::decimals(middle, radius, digits);
     for (const bool below : {true, false}) {
       const std::string& text = below ? low_end : high_end;
-      const Wide end = Wide(middle.high()) + middle.low() + (below ? -radius : radius);
+      const double by = below ? -radius : radius;
+      const Wide end = Wide(middle.high()) + middle.low() + by;
       const Wide outside = below ? Wide(end - Wide(text)) : Wide(Wide(text) - end);
       EXPECT_GE(outside, 0) << text;
+      const auto in_integers = detail::quick_decimal_beside({middle.high(), middle.low(), by}, digits, below);
+      quick += in_integers.has_value();
       if (end == 0) continue;
       const int exponent = std::stoi(text.substr(text.find('e') + 1));
       const Wide unit = pow(Wide(10), exponent - digits + 1);
-      const bool next_to_power = abs(Wide(text)) + 11 * unit > pow(Wide(10), exponent + 1);  // where units change
-      EXPECT_TRUE(outside < unit || (next_to_power && outside < 11 * unit)) << text;
+      const bool at_power = !in_integers && abs(end) + unit > pow(Wide(10), exponent + 1);
+      EXPECT_LT(outside, at_power ? Wide(10 * unit) : unit) << text;
     }
   }
+  EXPECT_GT(quick, 4000U);
 }
 
 }  // namespace cradle::test::ball_test

@@ -253,7 +253,7 @@ std::string expected_lines(const Scene& scene, const Cost& cost) {
   }
   const auto* after = stops_at_collapse(scene) ? "where the run stops"
                       : particles_merge(scene) ? "after which particles merge"
-                                               : "how many follow is not known";
+                                               : "after which more follow, how many is not known";
   std::string text = fmt::format("collisions: about {}", about(*cost.collisions));
   if (cost.collapse)
     text += fmt::format(" until inelastic collapse at about t = {}, {}", about(*cost.collapse, 3), after);

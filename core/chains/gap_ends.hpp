@@ -103,8 +103,8 @@ template <Real T, class Masses> class GapEnds : public GapPlaces<T, Masses> {
 
   // Predicts the next collisions with walls under gravity, where all others have just been.
   void foresee_walls() {
-    for (const Slot s : {first(), last()})
-      if (wall_gaps_.at_wall(particle(s))) wall_gaps_.foresee(line_, s);
+    if (wall_gaps_.at_wall(particle(first()))) wall_gaps_.foresee(line_, first());
+    if (first() < last() && wall_gaps_.at_wall(particle(last()))) wall_gaps_.foresee(line_, last());
     if (wall_gaps_.resting() > 0)
       if (const Slot above = slot_in_pile(wall_gaps_.resting()); wall_gaps_.above_pile(particle(above)))
         wall_gaps_.foresee(line_, above);

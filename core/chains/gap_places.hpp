@@ -77,11 +77,7 @@ template <Real T, class Masses> class GapPlaces : public HeldGaps<T, Masses> {
   using Held::slot, Held::front_particle, Held::centre_, Held::fastest_;
 
   Flight<T> flight(const Anchor<T>& anchor, const T& time) const {
-    if (falls() &&
-        (wall_gaps_.resting() == particles_->count() ||
-         (particles_->count() == 1 && particles_->holding() != nullptr)) &&
-        particles_->wall_at(anchor.particle()) == nullptr)
-      return from_wall(time);
+    if (falls() && wall_gaps_.holds_all() && particles_->wall_at(anchor.particle()) == nullptr) return from_wall(time);
     return anchor.flight(*particles_, clock(), time);
   }
   // Enters it in the account if closing speeds have lost their digits (see `closed`).

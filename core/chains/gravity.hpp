@@ -19,7 +19,7 @@ template <Real T> class Gravity {
  public:
   explicit Gravity(const Particles<T>& particles)
       : acceleration_(particles.acceleration()), left_(end(particles, End::left)), right_(end(particles, End::right)),
-        piles_(particles.count() > 1 && particles.holding() != nullptr),
+        holds_(particles.holding() != nullptr), piles_(particles.count() > 1 && holds_),
         pile_end_(piles_ && particles.holding() == particles.wall(End::right) ? End::right : End::left),
         anywhere_(acceleration_ != T(0) || shaken()), gaps_(particles.gaps()), count_(particles.count()) {
     if (anywhere_) splitter_ = splitter<T>();
@@ -44,6 +44,8 @@ template <Real T> class Gravity {
     return end.wall.holds ? end.rest_speed : T(0);
   }
 
+  // Whether a wall has all particles on it, or the single one that it can hold.
+  bool holds_all() const { return resting_ == count_ || (holds_ && count_ == 1); }
   // Whether several particles can rest, at which end, and how many do; a gap there, counted from the wall.
   bool piles() const { return piles_; }
   End pile_end() const { return pile_end_; }
@@ -127,7 +129,7 @@ template <Real T> class Gravity {
 
   T acceleration_, splitter_{0};
   AtEnd left_, right_;
-  bool piles_;
+  bool holds_, piles_;
   End pile_end_;
   bool anywhere_;
   GapRange gaps_;

@@ -76,7 +76,8 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
   // The local time of a gap, as a time since the start.
   Pair<T> since_start(Slot s) const {
     const T& time = cells_[s].time;
-    return clock_.since_start(time) + (is_negative(time) ? lag_[s] : T(0));
+    const Pair<T> since = clock_.since_start(time);
+    return is_negative(time) ? since + lag_[s] : since;
   }
   // Local time of the next collision of a gap that is closing.
   T due(Slot s, const T& closing) const {

@@ -79,10 +79,13 @@ template <Real T> class Approach {
   std::optional<WallMeeting<T>> meeting() const {
     const std::optional<T> speed = meeting_speed();
     if (!speed) return {};
-    const T sum = *speed + magnitude(closing_);
-    if (at_rest_or_leaving()) return WallMeeting<T>{T(sum / pull_), *speed};
-    if (is_negative(closing_)) return WallMeeting<T>{refined(T(sum / pull_), *speed), *speed};
-    return WallMeeting<T>{is_positive(sum) ? refined(T((gap_ + gap_) / sum), *speed) : T(0), *speed};
+    const T time = time_at(*speed);
+    return WallMeeting<T>{at_rest_or_leaving() || time == T(0) ? time : refined(time, *speed), *speed};
+  }
+  // That time to a few units, sooner.
+  std::optional<T> roughly_in() const {
+    const std::optional<T> speed = meeting_speed();
+    return speed ? std::optional<T>(time_at(*speed)) : std::nullopt;
   }
 
  private:
@@ -96,6 +99,11 @@ template <Real T> class Approach {
     return {};
   }
 
+  T time_at(const T& speed) const {
+    const T sum = speed + magnitude(closing_);
+    if (at_rest_or_leaving() || is_negative(closing_)) return sum / pull_;
+    return is_positive(sum) ? T((gap_ + gap_) / sum) : T(0);
+  }
   // The root of D, 0 if D is negative.
   T speed_there() const {
     const T least =

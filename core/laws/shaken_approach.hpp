@@ -11,9 +11,9 @@
 //   parabola   a quadratic equation for each arc, one after the other
 //   sine       w cannot grow faster than p + A omega^2, nor within a time d faster than p + s'' + A omega^3 d. So the
 //              gap stays open for as long as one that closes at that rate; such waits are made one after the other.
-//              Once w surely stays positive, there is one root, and the series of g to the third order says where, but
-//              for its rest, which is below A omega^4 d^4/24: the search goes to where the gap is surely still open, or
-//              ends if the rest cannot show. At a double root waits shrink by a constant factor each.
+//              Once w surely stays positive, there is one root, and the series of g to the fourth order says where, but
+//              for its rest, which is below A omega^5 d^5/120: the search goes to where the gap is surely still open,
+//              or ends if the rest cannot show. At a double root waits shrink by a constant factor each.
 //
 // While the wall cannot reach the particle, since it is further than A from the wall's place, time is skipped. There is
 // no collision if none comes within a period after the particle has ceased to approach that place.
@@ -85,9 +85,9 @@ template <Real T> class ShakenApproach {
   // nothing if it never will.
   std::optional<T> out_of_reach(const T& distance, const T& closing) const {
     if (!(motion_.amplitude() < distance)) return T(0);
-    const auto wait = straight(T(distance - motion_.amplitude()), closing, pull_).meeting();
+    const auto wait = straight(T(distance - motion_.amplitude()), closing, pull_).roughly_in();
     if (!wait) return {};
-    const T surely = wait->in - motion_.period() / T(16);
+    const T surely = *wait - motion_.period() / T(16);
     return is_positive(surely) ? surely : T(0);
   }
   // A time without collisions after which there are none.
@@ -223,23 +223,26 @@ template <Real T> class ShakenApproach {
     const T speed = square_root(square);
     return is_positive(closing) ? T((gap + gap) / (closing + speed)) : T((speed - closing) / rate);
   }
-  // Where the series of a gap that closes at w, cut after the third order in the time d, is 0; how far from there the
-  // gap itself is 0 at most; and w then, but for a term of the third order. The rest of the gap is below f d^4/24.
+  // Where the series of a gap that closes at w, cut after the fourth order in the time d, is 0; how far from there the
+  // gap itself is 0 at most; and w then, but for a term of the fourth order. The rest of the gap is below f d^5/120.
   // Nothing if they do not say that w stays above half of what it is.
   struct NearRoot {
     T in, off, closing;
   };
-  static std::optional<NearRoot> near_root(const T& gap, const T& closing, const T& rate, const T& jerk, const T& f) {
+  static std::optional<NearRoot> near_root(const T& gap, const T& closing, const T& rate, const T& jerk, const T& snap,
+                                           const T& f) {
     const T inside = closing * closing + (rate + rate) * gap;
     if (!(is_positive(closing) && is_positive(inside))) return {};
-    const auto speed_after = [&](const T& time) { return T(closing + time * (rate + time * jerk / T(2))); };
+    const auto speed_after = [&](const T& d) { return T(closing + d * (rate + d * (jerk / T(2) + d * snap / T(6)))); };
     const T second = (gap + gap) / (closing + square_root(inside));
-    const T in = second - jerk * second * second * second / (T(6) * speed_after(second)), until = in + in / T(4);
-    const T braking = is_negative(rate) ? T(-rate) : T(0), more = is_negative(jerk) ? T(-jerk) : T(0);
-    const T lost = until * (braking + until * (more / T(2) + f * until / T(6)));
+    const T in = second - second * second * second * (jerk + second * snap / T(4)) / (T(6) * speed_after(second));
+    const auto slows = [](const T& change) { return is_negative(change) ? T(-change) : T(0); };
+    const T until = in + in / T(4);
+    const T lost =
+        until * (slows(rate) + until * (slows(jerk) / T(2) + until * (slows(snap) + f * until / T(4)) / T(6)));
     if (!(is_positive(in) && lost + lost < closing)) return {};
-    const T left = gap - in * (closing + in * (rate / T(2) + in * jerk / T(6)));
-    const T off = (magnitude(left) + f * in * in * in * in / T(24)) * T(2) / closing;
+    const T left = gap - in * (closing + in * (rate / T(2) + in * (jerk + in * snap / T(4)) / T(6)));
+    const T square = in * in, off = (magnitude(left) + f * in * (square * square) / T(120)) * T(2) / closing;
     return off < in / T(4) ? std::optional(NearRoot{in, off, speed_after(in)}) : std::nullopt;
   }
   std::optional<WallMeeting<T>> on_sine() const {
@@ -258,15 +261,18 @@ template <Real T> class ShakenApproach {
         const T there = at(when).state.closing;
         return WallMeeting<T>{when, is_positive(there) ? there : closing};
       }
-      const T open = is_positive(gap) ? gap : T(0), fourth = motion_.curving() * square;
-      const auto root = near_root(open, closing, rate, T(-square * speed), fourth);
+      const T open = is_positive(gap) ? gap : T(0), fifth = changing * square;
+      const auto root = near_root(open, closing, rate, T(-square * speed), T(square * square * place), fifth);
       if (root && !(time + root->in < T(time + root->in) + root->off) &&
-          fourth * root->in * root->in * root->in < T(std::numeric_limits<T>::epsilon()) * closing)
+          fifth * root->in * root->in * (root->in * root->in) < T(4) * T(std::numeric_limits<T>::epsilon()) * closing)
         return WallMeeting<T>{T(time + root->in), root->closing};
-      const auto surely = open_for(open, closing, greatest);
-      if (!surely) return {};
-      T wait = root ? std::max(*surely, T(root->in - root->off)) : *surely;
-      if (!root) {
+      T wait(0);
+      if (root) {
+        wait = root->in - root->off;
+      } else {
+        const auto surely = open_for(open, closing, greatest);
+        if (!surely) return {};
+        wait = *surely;
         // Within four times as long or until the acceleration has changed its sign on the mean; from size and speed 0
         // not quite until then, since rounding would have the sign.
         const T times(*surely == T(0) ? 2 : 3), within = std::max(T(4) * *surely, times * magnitude(rate) / changing);

@@ -20,7 +20,7 @@ template <Real T> class Clock {
   Pair<T> stamp(const T& offset) const { return origin_ + offset; }
   T time(const T& offset) const { return stamp(offset).value(); }
   T elapsed(const T& offset) const { return difference(stamp(offset), Pair<T>{start_, T(0)}); }
-  Pair<T> since_start(const T& offset) const { return stamp(offset) - start_; }
+  Pair<T> since_start(const T& offset) const { return start_ == T(0) ? stamp(offset) : stamp(offset) - start_; }
 
   void move_origin(const T& by) { origin_ = origin_ + by; }
   static auto state(auto& self) { return std::tie(self.origin_); }

@@ -119,9 +119,12 @@ requires(!LawWithMemory<Law, typename Chain::Scalar>) class Segments {
     }
     cut(chain);
     if (!chain.fronts_are_within(own_.front().first + own_.front().gaps - 1, own_.back().first)) return give_up(chain);
-    // Anew where slots have become fewer: what is left in spare ones would name slots that there are no more.
-    if (!after_ || after_->slots() > chain.slots()) after_.emplace(chain.start(), T(1));
+    if (!after_) after_.emplace(chain.start(), T(1));
+    const bool fewer = after_->slots() > chain.slots();
     after_->resize(chain.slots());
+    // What is left in spare slots would name some that there are no more.
+    for (Slot s = 0; fewer && s < chain.slots(); ++s)
+      if (s < chain.first() || s > chain.last()) after_->put(s, {});
     std::vector<std::size_t> todo(own_.size());
     std::iota(todo.begin(), todo.end(), std::size_t{0});
     std::uint64_t again = 0, all = 0;

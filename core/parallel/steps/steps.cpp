@@ -1,6 +1,11 @@
 // A step on vectors. Google Highway compiles this file once for each kind of vectors and takes the widest ones that the
 // processor has; no other file knows it.
 
+// Vectors of two doubles are slower than the event loop (fastest_steps): they are not compiled, but where a processor
+// has no others.
+#ifndef HWY_DISABLED_TARGETS
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4)
+#endif
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "cradle/core/parallel/steps/steps.cpp"
 #include <hwy/foreach_target.h>  // before highway.h
@@ -156,30 +161,43 @@ HWY_INLINE bool is_first_by_links(const StepLine& line, const Local& l, std::siz
   return first;
 }
 
-// Which of the candidates are first in their neighbourhoods, and which must wait.
+// Which of the candidates are first in their neighbourhoods, and which must wait. Whether one is first is as good as
+// random, so that lists are written without branches.
 template <bool linked> HWY_INLINE void decide(const StepLine& line, Local& l, double end) {
   l.firsts = l.by_links = l.at_edges = l.later = 0;
   for (std::size_t k = 0; k < l.count; ++k) {
     const std::size_t i = l.candidates[k];
+    const auto place = static_cast<std::uint32_t>(i);
+    const StepLine::Special special = linked                         ? l.special[i]
+                                      : i - l.inner_first >= l.inner ? StepLine::edge
+                                                                     : StepLine::none;
     const bool is_due = l.due[i] <= end;
     bool now = is_due & is_first(l.due + i);
-    l.waiting[l.later] = static_cast<std::uint32_t>(i);
-    if (linked ? l.special[i] != StepLine::none : i - l.inner_first >= l.inner) [[unlikely]] {
+    if (special == StepLine::edge) [[unlikely]] {
       if (linked)
         now = now && (planted(1) || is_first_by_links(line, l, i));
       else
         now = now && (l.around == 0 || planted(1) || is_first_on_ring(l, i));
-      l.later += is_due & !now;
-      if (!now) continue;
-      if (linked && l.special[i] == StepLine::near_vacant)
-        l.first_by_links[l.by_links++] = static_cast<std::uint32_t>(i);
-      else
-        l.edges[l.at_edges++] = static_cast<std::uint32_t>(i);
-      continue;
+      l.edges[l.at_edges] = place;
+      l.at_edges += now;
     }
-    l.later += is_due - now;
-    l.first[l.firsts] = static_cast<std::uint32_t>(i);
-    l.firsts += now;
+    l.waiting[l.later] = place;
+    l.later += is_due & !now;
+    l.first[l.firsts] = place;
+    l.firsts += now & (special == StepLine::none);
+    if constexpr (linked) {
+      l.first_by_links[l.by_links] = place;
+      l.by_links += now & (special == StepLine::near_vacant);
+    }
+  }
+  const std::size_t near_vacant = std::exchange(l.by_links, 0);
+  for (std::size_t k = 0; linked && k < near_vacant; ++k) {
+    const std::uint32_t place = l.first_by_links[k];
+    const bool now = planted(1) || is_first_by_links(line, l, place);
+    l.waiting[l.later] = place;
+    l.later += !now;
+    l.first_by_links[l.by_links] = place;
+    l.by_links += now;
   }
 }
 

@@ -46,7 +46,7 @@ concept ListsState = requires(X& x) {
 namespace detail {
 
 template <class X> inline constexpr bool is_sequence = false;
-template <class X> inline constexpr bool is_sequence<std::vector<X>> = true;
+template <class X, class A> inline constexpr bool is_sequence<std::vector<X, A>> = true;
 template <class X> inline constexpr bool is_sequence<std::deque<X>> = true;
 template <class X> inline constexpr bool is_map = false;
 template <class K, class V> inline constexpr bool is_map<std::map<K, V>> = true;
@@ -59,9 +59,9 @@ template <class A, class B> inline constexpr bool is_pair<std::pair<A, B>> = tru
 template <class X> inline constexpr bool is_variant = false;
 template <class... X> inline constexpr bool is_variant<std::variant<X...>> = true;
 // Lists that are stored as one block of memory.
-template <class X>
-inline constexpr bool is_plain =
-    std::same_as<X, std::string> || std::same_as<X, std::vector<double>> || std::same_as<X, std::vector<std::uint64_t>>;
+template <class X> inline constexpr bool is_plain = std::same_as<X, std::string>;
+template <class A> inline constexpr bool is_plain<std::vector<double, A>> = true;
+template <class A> inline constexpr bool is_plain<std::vector<std::uint64_t, A>> = true;
 
 template <class X> inline constexpr bool is_whole = std::is_integral_v<X> || std::is_enum_v<X>;
 

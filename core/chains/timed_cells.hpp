@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "cradle/core/base/large_pages.hpp"
 #include "cradle/core/base/real.hpp"
 #include "cradle/core/queue/event_queue.hpp"
 #include "cradle/core/queue/ledger.hpp"
@@ -44,8 +45,8 @@ template <Real T, std::derived_from<TimedGap<T>> Cell> class TimedCells {
  public:
   // What gaps are in, to be used again for others.
   struct Memory {
-    std::vector<Cell> cells = {};
-    std::vector<T> lag = {};
+    LongArray<Cell> cells = {};
+    LongArray<T> lag = {};
   };
   TimedCells() = default;
   explicit TimedCells(Memory memory) : cells_(std::move(memory.cells)), lag_(std::move(memory.lag)) {}
@@ -55,21 +56,30 @@ template <Real T, std::derived_from<TimedGap<T>> Cell> class TimedCells {
   std::size_t slots() const { return cells_.size(); }
   Cell& operator[](Slot s) { return cells_[s]; }
   const Cell& operator[](Slot s) const { return cells_[s]; }
-  // Changes to so many slots. Those from `first` on get the contents of `kept`, in that order.
+  // Changes to so many slots. Those from `first` on get the contents of `kept`, which ascend, in that order; where none
+  // moves to the right, in the memory that is there.
   void lay_out(std::size_t slots, Slot first, const std::vector<Slot>& kept) {
     if (kept.empty()) {
       cells_.assign(slots, Cell());
       lag_.assign(slots, T(0));
       return;
     }
-    std::vector<Cell> cells(slots);
-    std::vector<T> lag(slots, T(0));
-    for (const Slot s : kept) {
-      cells[first] = std::move(cells_[s]);
-      lag[first++] = std::move(lag_[s]);
-    }
-    cells_ = std::move(cells);
-    lag_ = std::move(lag);
+    const auto rearrange = [&](auto& all, const auto& vacant) {
+      std::remove_reference_t<decltype(all)> moved;
+      const bool in_place = first <= kept.front();
+      if (!in_place) moved.resize(slots, vacant);
+      auto& to = in_place ? all : moved;
+      Slot next = first;
+      for (const Slot s : kept) {
+        if (&to[next] != &all[s]) to[next] = std::move(all[s]);
+        ++next;
+      }
+      if (!in_place) return all.swap(moved);
+      all.resize(next, vacant), all.resize(slots, vacant);
+      std::fill_n(all.begin(), first, vacant);
+    };
+    rearrange(cells_, Cell());
+    rearrange(lag_, T(0));
   }
   void put(Slot s, Cell&& cell) {
     cells_[s] = std::move(cell);
@@ -174,8 +184,8 @@ template <Real T, std::derived_from<TimedGap<T>> Cell> class TimedCells {
     then = now;
   }
 
-  std::vector<Cell> cells_;
-  std::vector<T> lag_;
+  LongArray<Cell> cells_;
+  LongArray<T> lag_;
 };
 
 }  // namespace cradle

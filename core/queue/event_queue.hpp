@@ -14,7 +14,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <vector>
+
+#include "cradle/core/base/large_pages.hpp"
 
 namespace cradle {
 
@@ -156,7 +157,7 @@ class EventQueue {
   std::size_t leaves_ = 0;
   Key mask_ = 0;
   Key slack_ = 0;
-  std::vector<Key> tree_;  // tree_[1] the root, tree_[leaves_ + s] the key of slot s
+  LongArray<Key> tree_;  // tree_[1] the root, tree_[leaves_ + s] the key of slot s
 };
 
 }  // namespace cradle

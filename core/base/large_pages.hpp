@@ -1,7 +1,7 @@
 #pragma once
 // Memory for long arrays, on large pages where the system has them. Memory is given page by page when it is first
-// touched, and the first touch of a page of 4 kB takes up to 40 us in virtual machines: with small pages
-// the particles of a large run cost more than their collisions (bench/results/trials.md).
+// touched, and the first touch of a page of 4 kB takes up to 40 us in virtual machines: there the memory of a large run
+// costs more than its collisions (bench/results/trials.md).
 
 #include <cstddef>
 #include <memory>

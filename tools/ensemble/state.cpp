@@ -23,11 +23,11 @@ void ReplicaTable::add(const ReplicaTable& other) {
 
 ReplicaTable ReplicaTable::part(std::size_t first, std::size_t last) const {
   ReplicaTable some(width_);
-  const auto of = [&](const auto& all, std::size_t width) {
+  const auto take = [&](auto& to, const auto& all, std::size_t width) {
     const auto part = std::span(all).subspan(first * width, (last - first) * width);
-    return std::vector(part.begin(), part.end());
+    to.assign(part.begin(), part.end());
   };
-  some.integers_ = of(integers_, integers), some.numbers_ = of(numbers_, width_);
+  take(some.integers_, integers_, integers), take(some.numbers_, numbers_, width_);
   return some;
 }
 

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "cradle/core/base/large_pages.hpp"
 #include "cradle/core/ensemble/ensemble.hpp"
 #include "cradle/tools/ensemble/every_replica.hpp"
 #include "cradle/tools/ensemble/layout.hpp"
@@ -46,8 +47,8 @@ class ReplicaTable {
  private:
   static constexpr std::size_t integers = 4;
   std::size_t width_;
-  std::vector<std::uint64_t> integers_;  // index, outcome, collisions, merges
-  std::vector<double> numbers_;
+  LongArray<std::uint64_t> integers_;  // index, outcome, collisions, merges
+  LongArray<double> numbers_;
 };
 
 /// A part of an ensemble, which journals hold and ranks send: finished replicas with their statistics, or all of an

@@ -114,10 +114,10 @@ void write_column(hid_t group, const Column& column, const Common& common) {
 // With room for these columns at once: HDF5 would copy all that is there each time that it makes more.
 Handle file_in_memory(const Result& result) {
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, no_room);
-  std::size_t grows_by = std::size_t{1} << 20;
+  std::size_t grows_by = std::size_t{1} << 18;
   for (const Group& group : result.groups)
     for (const Column& column : group.columns) grows_by += column.rows() * column.width * sizeof(double);
-  check(H5Pset_fapl_core(access, grows_by, false), no_room);
+  check(H5Pset_fapl_core(access, std::max(grows_by, std::size_t{1} << 20), false), no_room);
   return {H5Fcreate("cradle", H5F_ACC_TRUNC, properties(H5P_FILE_CREATE), access), H5Fclose, no_room};
 }
 

@@ -237,9 +237,8 @@ template <Real T> class ShakenApproach {
     const T second = (gap + gap) / (closing + square_root(inside));
     const T in = second - second * second * second * (jerk + second * snap / T(4)) / (T(6) * speed_after(second));
     const auto slows = [](const T& change) { return is_negative(change) ? T(-change) : T(0); };
-    const T until = in + in / T(4);
-    const T lost =
-        until * (slows(rate) + until * (slows(jerk) / T(2) + until * (slows(snap) + f * until / T(4)) / T(6)));
+    const T far = in + in / T(4);
+    const T lost = far * (slows(rate) + far * (slows(jerk) / T(2) + far * (slows(snap) + f * far / T(4)) / T(6)));
     if (!(is_positive(in) && lost + lost < closing)) return {};
     const T left = gap - in * (closing + in * (rate / T(2) + in * (jerk + in * snap / T(4)) / T(6)));
     const T square = in * in, off = (magnitude(left) + f * in * (square * square) / T(120)) * T(2) / closing;
@@ -265,14 +264,11 @@ template <Real T> class ShakenApproach {
       const auto root = near_root(open, closing, rate, T(-square * speed), T(square * square * place), fifth);
       if (root && !(time + root->in < T(time + root->in) + root->off) &&
           fifth * root->in * root->in * (root->in * root->in) < T(4) * T(std::numeric_limits<T>::epsilon()) * closing)
-        return WallMeeting<T>{T(time + root->in), root->closing};
-      T wait(0);
-      if (root) {
-        wait = root->in - root->off;
-      } else {
-        const auto surely = open_for(open, closing, greatest);
-        if (!surely) return {};
-        wait = *surely;
+        return WallMeeting<T>{T(time + root->in), root->closing};  // the rest of w is a 24th of what is asked above
+      const auto surely = root ? std::optional<T>(root->in - root->off) : open_for(open, closing, greatest);
+      if (!surely) return {};
+      T wait = *surely;
+      if (!root) {
         // Within four times as long or until the acceleration has changed its sign on the mean; from size and speed 0
         // not quite until then, since rounding would have the sign.
         const T times(*surely == T(0) ? 2 : 3), within = std::max(T(4) * *surely, times * magnitude(rate) / changing);

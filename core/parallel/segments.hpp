@@ -122,9 +122,8 @@ requires(!LawWithMemory<Law, typename Chain::Scalar>) class Segments {
     if (!after_) after_.emplace(chain.start(), T(1));
     const bool fewer = after_->slots() > chain.slots();
     after_->resize(chain.slots());
-    // What is left in spare slots would name some that there are no more.
     for (Slot s = 0; fewer && s < chain.slots(); ++s)
-      if (s < chain.first() || s > chain.last()) after_->put(s, {});
+      if (s < chain.first() || s > chain.last()) after_->put(s, {});  // else it would name slots that there are no more
     std::vector<std::size_t> todo(own_.size());
     std::iota(todo.begin(), todo.end(), std::size_t{0});
     std::uint64_t again = 0, all = 0;

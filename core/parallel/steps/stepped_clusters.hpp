@@ -68,8 +68,8 @@ requires(!Law::bounces_only && requires(const Law& law) {
     double last = -StepLine::never;
   };
 
-  // How many links decisions in steps follow on either side (steps.cpp): if one of these links skips a vacant cell, the
-  // nearest such cell is as near.
+  // How many links decisions in steps follow on either side (decisions.inl): if one of these links skips a vacant cell,
+  // the nearest such cell is as near.
   static constexpr std::ptrdiff_t near = 3;
 
   // The gaps at cuts, fronts and the seam, wherever they are now.

@@ -34,4 +34,6 @@ target_compile_options(cradle_build INTERFACE
                        -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion
                        # g++ 12 sees overlap in every `text + ": "` (GCC bug 105329).
                        $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-restrict>
+                       # g++ tidies its memory more rarely: a twelfth less time, 100 to 700 MB more memory.
+                       $<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-heapsize=524288>
                        $<$<BOOL:${CRADLE_WERROR}>:-Werror> $<$<BOOL:${CRADLE_ARCH}>:-march=${CRADLE_ARCH}>)

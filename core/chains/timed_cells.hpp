@@ -100,6 +100,10 @@ template <Real T, std::derived_from<TimedGap<T>> Cell> class TimedCells {
   }
 
   // ---- copies of a part (segments.hpp)
+  void copy(const TimedCells& other, Slot from, Slot to) {
+    cells_[to] = other.cells_[from];
+    lag_[to] = other.lag_[from];
+  }
   void copy(const TimedCells& other, Slot from, Slot to, std::size_t gaps) {
     std::copy_n(&other.cells_[from], gaps, &cells_[to]);
     std::copy_n(&other.lag_[from], gaps, &lag_[to]);

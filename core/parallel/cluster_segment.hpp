@@ -111,19 +111,22 @@ template <Real T> class ClusterSegment {
     more_right_ = range.unheld_right() > static_cast<ParticleIndex>(along_right_);
     line_.gaps.resemble(cells.gaps, last_ + 3);
     if (report.observe) place_.resize(last_ + 1);
-    for (Slot s = first_ + along_left_, end = last_ - along_right_ + 1, gaps = 0; s < end; s += gaps) {
-      for (gaps = 1; s + gaps < end && cells.right(from + gaps - 1) == from + gaps; ++gaps) continue;
-      line_.gaps.copy(cells.gaps, from, s, gaps);
-      for (std::size_t k = 0; report.observe && k < gaps; ++k) place_[s + k] = chain.place(from + k);
-      if (range.front_left() - from < gaps) reached_left_ = s + (range.front_left() - from);
-      if (range.front_right() - from < gaps) reached_right_ = s + (range.front_right() - from);
-      const Slot next = cells.right(from + gaps - 1);
-      if (ring && next < from && s + gaps < end) seam_ = s + gaps - 1;
+    const Slot begin = first_ + along_left_, end = last_ - along_right_;  // of what is not taken along
+    const Slot front_left = range.front_left(), front_right = range.front_right();
+    for (Slot s = begin; s <= end; ++s) {  // one by one: where particles have merged, few are side by side
+      line_.gaps.copy(cells.gaps, from, s);
+      line_.gaps[s].left = s - 1, line_.gaps[s].right = s + 1;
+      if (report.observe) place_[s] = chain.place(from);
+      if (from == front_left) reached_left_ = s;
+      if (from == front_right) reached_right_ = s;
+      const Slot next = cells.right(from);
+      if (ring && next < from && s < end) seam_ = s;
       from = next;
     }
     farthest_ = reached_right_;
     take_along(chain, report.observe);
-    for (Slot s = first_; s <= last_; ++s) line_.link(s - 1, s);
+    for (Slot s = first_; s < begin; ++s) line_.link(s, s + 1);
+    for (Slot s = end; s < last_; ++s) line_.link(s, s + 1);
     line_.place_end(first_ - 1, first_);
     line_.place_end(last_ + 1, last_);
     line_.gaps.forget(last_);
@@ -163,22 +166,17 @@ template <Real T> class ClusterSegment {
     // The seam may have been taken over by what is left of it.
     bool behind_seam = second_end > chain.first() && seam_ < own_first_;
     if (behind_seam) go_on_behind_seam();
-    for (bool more = true; more;) {
-      Slot to = s;
-      while (to != last && to != seam_ && right(to) == to + 1) ++to;
-      const std::size_t gaps = to + 1 - s;
-      after.copy(line_.gaps, s, there, gaps);
-      for (std::size_t k = 0; k < gaps; ++k)
-        after[there + k].left = there + k - 1, after[there + k].right = there + k + 1;
-      if (reached_left_ - s < gaps) report.left_front.slot = there + (reached_left_ - s);
-      if (reached_right_ - s < gaps) report.right_front.slot = there + (reached_right_ - s);
-      if (report.cells.empty() || report.cells.back().first + report.cells.back().count != there)
-        report.cells.push_back({there, 0});
-      report.cells.back().count += gaps;
-      there += gaps;
-      more = to != last;
-      s = right(to);
-      if (to == seam_ && more) go_on_behind_seam(), behind_seam = true;
+    for (Slot row = there;; s = right(s)) {
+      after.copy(line_.gaps, s, there);
+      after[there].left = there - 1, after[there].right = there + 1;
+      if (s == reached_left_) report.left_front.slot = there;
+      if (s == reached_right_) report.right_front.slot = there;
+      ++there;
+      if (s != last && s != seam_) continue;
+      report.cells.push_back({row, there - row});
+      if (s == last) break;
+      go_on_behind_seam(), behind_seam = true;
+      row = there;
     }
     vacate(there, behind_seam ? second_end : first_end);
     if (!behind_seam) vacate(chain.first(), second_end);

@@ -160,12 +160,17 @@ std::vector<CommandText> CommandLine::texts() const {
 }
 
 Action CommandLine::read(int argc, const char* const* argv) {
+  std::vector<const char*> words(argv, argv + argc);
+  if (argc > 1 && std::string_view(words[1]) == "help") {  // `help run` is `run --help`
+    words.erase(words.begin() + 1);
+    words.insert(words.begin() + (argc > 2 ? 2 : 1), "--help");
+  }
   if (argc < 2 && !first_steps_.empty())
     return [this]() -> Exit {
       fmt::print("{}", first_steps_);
       throw Error({}, "no command", "", fmt::format("give one, see `{} --help`", program_->get_name()));
     };
-  const char* const first = argc > 1 ? argv[1] : "-";
+  const char* const first = argc > 1 ? words[1] : "-";
   const auto is_first = [first](const CLI::App* command) { return command->get_name() == first; };
   if (*first != '-' && program_->get_subcommands(is_first).empty()) {
     std::vector<std::string> names;
@@ -176,7 +181,7 @@ Action CommandLine::read(int argc, const char* const* argv) {
     throw Error({}, "no such command", first, fmt::format("did you mean `{} {}`?", program_->get_name(), nearest));
   }
   try {
-    program_->parse(argc, argv);
+    program_->parse(argc, words.data());
     return chosen_;
   } catch (const CLI::ExtrasError&) {
     const std::vector<std::string> more = program_->remaining(true);

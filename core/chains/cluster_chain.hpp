@@ -164,9 +164,11 @@ template <Real T> class ClusterChain : public ClusterPlaces<T> {
 
   ClusterChain(std::shared_ptr<const Particles<T>> particles, const T& start, GapRange held)
       : Places(std::move(particles), start, held) {
-    lay_out({}, static_cast<std::size_t>(held.last - held.first + 2));
-    for (Slot s = first(); s <= last(); ++s)
-      line_.gaps.put(s, load(held.first + static_cast<ParticleIndex>(s - first()), T(0), s < last() || on_ring()));
+    const auto cells = static_cast<std::size_t>(held.last - held.first + 2);
+    const std::size_t needed = range_.lay_out(cells, growth(cells));
+    line_.gaps.fill(needed, first(), cells, [&](std::size_t k) {
+      return load(held.first + static_cast<ParticleIndex>(k), T(0), k + 1 < cells || on_ring());
+    });
     link();
     if (on_ring()) active_ = particles_->count();
   }
@@ -180,10 +182,12 @@ template <Real T> class ClusterChain : public ClusterPlaces<T> {
     return {{with_gap ? particles_->gap(b) : T(1), time}, particles_->velocity(b) - frame_, particles_->mass(b), b};
   }
 
+  static ParticleIndex growth(std::size_t held) {
+    return static_cast<ParticleIndex>(std::max<std::size_t>(held / 2, 24));
+  }
   // Changes to enough slots for the zone to grow by half on either side, with the cells at `kept`.
   void lay_out(const std::vector<Slot>& kept, std::size_t held) {
-    const auto growth = static_cast<ParticleIndex>(std::max<std::size_t>(held / 2, 24));
-    const std::size_t needed = range_.lay_out(held, growth, kept);
+    const std::size_t needed = range_.lay_out(held, growth(held), kept);
     line_.gaps.lay_out(needed, first(), kept);
     vacated_ = 0;
   }

@@ -81,6 +81,15 @@ template <Real T, std::derived_from<TimedGap<T>> Cell> class TimedCells {
     rearrange(cells_, Cell());
     rearrange(lag_, T(0));
   }
+  // The same, with what make(k) returns for the k-th of those from `first` on.
+  template <class Make> void fill(std::size_t slots, Slot first, std::size_t held, const Make& make) {
+    cells_.clear();
+    cells_.reserve(slots);
+    cells_.resize(first);
+    for (std::size_t k = 0; k < held; ++k) cells_.push_back(make(k));
+    cells_.resize(slots);
+    lag_.assign(slots, T(0));
+  }
   void put(Slot s, Cell&& cell) {
     cells_[s] = std::move(cell);
     lag_[s] = T(0);

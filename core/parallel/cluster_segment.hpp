@@ -95,8 +95,8 @@ template <Real T> class ClusterSegment {
     report.nothing_left = held == 0;
     report.plain = ring && others < 2;
     if (report.nothing_left || report.plain) return false;
-    // No particle is held twice.
-    const std::size_t most = ring ? std::min(ghosts, others / 2) : ghosts;
+    // No particle is held twice. On a ring no front runs through them, so that a small segment needs fewer.
+    const std::size_t most = ring ? std::min({ghosts, others / 2, std::max<std::size_t>(held / 64, 24)}) : ghosts;
     std::size_t before = 0, behind = 0;
     for (; before < most && (ring || from != chain.first()); ++before) from = cells.left(from);
     for (; behind < most && (ring || to != chain.last()); ++behind) to = cells.right(to);

@@ -11,7 +11,7 @@ bool ReplicaRun::Numbers::take_series(std::vector<NumberColumn>& rows) {
   for (std::size_t k = 0; k < rows.size(); ++k) {
     std::vector<double>& values = rows[k].values;
     if (series[k].empty()) series[k].swap(values);
-    series[k].insert(series[k].end(), values.begin(), values.end());
+    for (const double value : values) series[k].push_back(value);
     values.clear();
   }
   return true;

@@ -258,12 +258,11 @@ std::string trust_table(const Scene& scene, const std::vector<Trusted>& runs) {
                 last(run.front_digits), digits(run.collapse_digits), fmt::format("{:.2f}", run.seconds), proved);
   }
   text += "\nTimes are those of samples (output.series). Right: the same sequence of collisions at every particle as "
-          "the reference; collisions: how many these are.\ncounts: numbers of collisions and merges. energy, front: digits "
-          "shared with the reference at the last sample that both have, of those that the type has, 100 at most; t_c: "
-          "of the collapse time. Digits are counted from the first one of the number itself (of the energy at the "
-          "start, if that is larger), so they are fewer where it passes zero. 6 digits until: the last sample up to "
-          "which energy and front share that many.\nproved: until when these collisions are proved to be those of the exact "
-          "system (cradle certify); -: none of them.\n";
+          "the reference; collisions: how many these are.\ncounts: numbers of collisions and merges. energy, front: "
+          "digits shared with the reference at the last sample of both, of those that the type has, 100 at most, "
+          "from the first digit of the number on (of a greater energy at the start), so fewer where it passes zero; "
+          "t_c: of the collapse time. 6 digits until: the last sample up to which energy and front share that many.\n"
+          "proved: until when these collisions are proved to be those of the exact system (cradle certify); -: none.\n";
   if (!scene.run.stop_gap && status_of_text(runs.back().outcome) == Exit::collapse)
     text += "Each run ends where its own precision has settled the collapse, after a number of collisions of its own, "
             "so that the ends are not compared: with a run.stop_gap, 1e-20 say, all of them end at the same gap and "

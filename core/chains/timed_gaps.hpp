@@ -101,11 +101,7 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
   [[gnu::always_inline]] double predict(Slot s, const T& closing) {
     Cell& cell = cells_[s];
     if constexpr (keys_are_exact) {
-      // Whether a gap closes is unpredictable, so choose by bits: a positive number is a positive integer.
-      const auto bits = std::bit_cast<std::uint64_t>(cell.time + cell.gap / closing);
-      const auto opening = std::uint64_t{0} - (std::bit_cast<std::int64_t>(closing) <= 0);
-      return cell.due =
-                 std::bit_cast<double>((bits & ~opening) | (std::bit_cast<std::uint64_t>(EventQueue::never) & opening));
+      return cell.due = if_closing(cell.time + cell.gap / closing, closing);
     } else {
       if (!is_positive(closing)) return EventQueue::never;
       // Exact times of float differ too much from those in double for the queue's slack.
@@ -129,7 +125,9 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
   }
   // Predicts off the hot path, for a gap of any age.
   void foresee(Slot s, const T& closing) {
-    if constexpr (keys_are_exact) cells_[s].due = closing > 0 ? collision_time(s, closing) : EventQueue::never;
+    // Only a gap with a negative local time has a lag.
+    if constexpr (keys_are_exact)
+      cells_[s].due = if_closing(cells_[s].time + cells_[s].gap / closing + lag_[s], closing);
   }
   void forget(Slot s) {
     if constexpr (keys_are_exact) cells_[s].due = EventQueue::never;
@@ -188,6 +186,13 @@ template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class 
  private:
   using Cells::cells_, Cells::lag_;
 
+  // The time if the gap is closing. Whether it is cannot be predicted, so the choice is by bits: a positive number is
+  // a positive integer.
+  [[gnu::always_inline]] static double if_closing(double time, double closing) {
+    const auto opening = std::uint64_t{0} - (std::bit_cast<std::int64_t>(closing) <= 0);
+    return std::bit_cast<double>((std::bit_cast<std::uint64_t>(time) & ~opening) |
+                                 (std::bit_cast<std::uint64_t>(EventQueue::never) & opening));
+  }
   // The largest negative gap that rounding explains, see `note`. Times are rounded in units of the offset, times due
   // before the last move of the origin in units of the offset at that move (`blur_`), and distances in units of the
   // distance. Each error acts on the gap at its speed before or after the collision. A negative gap stays negative and

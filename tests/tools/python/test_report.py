@@ -11,7 +11,6 @@ import cradle.drawing.theory
 import small
 from cradle import program
 from cradle.errors import COLLAPSE, DIFFERS, DONE
-from cradle.page.captions import SEE
 from cradle.page.elements import enclosed, measured, number
 from small import read
 
@@ -129,9 +128,6 @@ class Reports(small.Case):
         for label, known in (("energy at the end", "proved"), ("collisions", "proved"), ("collapse", "estimated"),
                              ("last interval", "unknown")):
             self.assertEqual(mark(small.page(small.collapse), label), known, label)
-
-    def test_say_what_to_see_in_every_picture(self):
-        self.assertEqual(set(SEE), set(cradle.plot.PICTURES))
 
     def test_tables_of_sweeps_have_no_blanks(self):
         # The second point takes the cut-off of the scene, the third one has none.

@@ -19,7 +19,6 @@ from ..plot import PICTURES, drawings
 from ..result import Result
 from ..seal import read_seal
 from .elements import code, count_of, number, preformatted, rows, section, text
-from .captions import SEE
 from .intro import introduction
 from .numbers import Entries, last, numbers, warnings
 from .tables import tables
@@ -117,7 +116,7 @@ def data_url(kind: str, content: bytes) -> str:
 def pictures(result: Result) -> str:
     found, cites = [], False
     for name, draw in drawings(result).items():
-        caption = f"{PICTURES.get(name, name)} {SEE.get(name, '')}"
+        caption = PICTURES[name]
         cites = cites or re.search(r"\bFigs?\. ", caption)
         found.append(f'<figure class="picture" id="picture-{name}">{picture(draw, caption)}\n'
                      f"<figcaption>{text(caption)} <span class=screen>{code(f'cradle.plot.{name}')}</span></figcaption>"

@@ -125,8 +125,7 @@ def on_post_build(config, **_):
 
 
 def on_page_content(html, page, **_):
-    """Long lines of the list of keys are wrapped. In the documentation of the Python package, each argument gets a line
-    of its own: `name: what it is`."""
+    """Wraps long lines of the list of keys; gives each argument of the Python package a line: `name: what it is`."""
     if page.file.src_uri == "tools/manual/keys.md":
         return html.replace("<code>", '<code class="wrapped">')
     if 'class="doc doc-contents' not in html:

@@ -125,8 +125,7 @@ class Browser:
         return value
 
     def shot(self, name, most=12000):
-        """For who wants to look: the page as PNG, its upper part where it is longer than so many pixels, in the folder
-        $CRADLE_SHOTS if that is set."""
+        """For who wants to look: the page's upper `most` pixels as PNG, in the folder $CRADLE_SHOTS if that is set."""
         if not os.environ.get("CRADLE_SHOTS"):
             return
         size = self.call("Page.getLayoutMetrics")["cssContentSize"]

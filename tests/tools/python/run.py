@@ -1,5 +1,4 @@
-"""run.py FILE: the unittest cases of a file test_*.py or *_test.py, or a script as it is. Status 77 where all cases
-were skipped."""
+"""run.py FILE: the unittest cases of a file test_*.py, or a script as it is. Status 77 where all cases were skipped."""
 import importlib
 import os
 import runpy

@@ -1,5 +1,4 @@
-"""What the tests share: small results, made once by the program in the working folder; how errors are checked; what a
-page of HTML refers to."""
+"""What the tests share: small results, made once in the working folder; a check of errors; what a page refers to."""
 import functools
 import html.parser
 import unittest

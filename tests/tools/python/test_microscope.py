@@ -68,8 +68,8 @@ class Microscope(browser.Browser):
 
 
 def rational_collapse(count):
-    """The first collisions of collapse3 in fractions: [(left, time, closing speed, positions, velocities after)], and
-    the initial state."""
+    """Initial state and first collisions of collapse3, in fractions: (left, time, closing speed, positions, velocities
+    after)."""
     restitution = Fraction(1, 20)
     x, v, t = [Fraction(0), Fraction(1), Fraction(3)], [Fraction(1), Fraction(0), Fraction(-1)], Fraction(0)
     start, collisions = (list(x), list(v)), []
@@ -146,8 +146,7 @@ class InBrowser(unittest.TestCase):
 
     @classmethod
     def made(cls, name, scene, keys):
-        """A page with the microscope of a report alone, of a run of the program; its result, and the microscope's data
-        of it."""
+        """A page with the microscope of a report alone, of a run; the run's result, and the microscope's data of it."""
         result = cradle.run(scene, {"output.events": True} | keys, output=cls.folder / f"{name}.h5")
         cls.addClassCleanup(result.close)
         path = cls.folder / f"{name}.html"
@@ -215,8 +214,7 @@ class InBrowser(unittest.TestCase):
         self.assertAlmostEqual(drawn["y"], y, delta=HUNDREDTH)
 
     def assert_exact(self, view, least=3):
-        """Every collision in sight, of both its particles, and points of all lines between, are where they should
-        be."""
+        """Every collision in sight, of both its particles, and points of all lines between, are in their places."""
         box, seen = view["box"], 0
         for event, (left, moment, _, _, _) in enumerate(self.collisions):
             x, y = self.exact_place(view, left, moment)

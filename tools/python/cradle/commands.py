@@ -175,8 +175,7 @@ def scene_file(scene) -> Iterator[tuple[str, str]]:
 
 
 def source_of(scene) -> tuple[str, str]:
-    """A scene file, the name of a bundled scene, or the text of one, which has line breaks; and what to call the text.
-    Raises Error for what is none."""
+    """A scene's file, its name if bundled, or its text, which has line breaks; and what to call it. Raises Error."""
     if isinstance(scene, Result):
         return scene.scene_text, str(scene.attributes.get("name", "scene"))
     if isinstance(scene, (str, os.PathLike)):

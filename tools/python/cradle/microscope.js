@@ -64,8 +64,7 @@ function cradleMicroscope(element, data) {
     request();
   }
 
-  // The logarithms that colour collisions, and their visible range, which changes slowly so that colours do not
-  // flicker.
+  // The logarithms that colour collisions, and their visible range, which changes slowly: colours must not flicker.
   function colouring() {
     const value = state.quantity === "speed" ? world.logSpeed : world.lost, { chart, view } = camera, sample = [];
     if (chart) {

@@ -20,8 +20,7 @@ function microscopeCamera(world) {
     camera.settle();
   };
 
-  // Moves to collision e, with given spans. The frame moves with the particles there if they would be tilted in the
-  // lab's.
+  // Moves to collision e, with given spans. The frame moves with the particles there if the lab's would tilt them.
   camera.goTo = (e, T, X) => {
     const anchor = { e, a: world.left[e] };
     // If the run ends soon after, the end is at four fifths of the picture.
@@ -71,8 +70,7 @@ function microscopeCamera(world) {
     return local + (tilt <= 0.5 ? 1 : (0.5 / tilt) ** 2) * (-view.lab - local);
   };
 
-  // Zooms time and space by factors about a point [tau, xi] of the picture (xi in the view's frame); larger factors
-  // zoom in.
+  // Zooms time and space by factors (in, if larger than 1) about a point [tau, xi] of the picture, in the view's frame.
   camera.zoom = (byTime, bySpace, pivot, follow) => {
     const view = camera.view, [tau, xi] = pivot;
     let T = view.T / byTime, X = view.X / bySpace;
@@ -120,20 +118,17 @@ function microscopeCamera(world) {
     camera.settle();
   };
 
-  // Makes a new chart if the present one no longer suits, and moves the anchor to the collision nearest to the middle
-  // if it has left the picture.
+  // Makes a new chart if this one no longer suits; moves an anchor that is out of sight to the collision in the middle.
   camera.settle = () => {
     camera.chartFor();
     const { view, chart } = camera;
-    if (Math.abs(view.tau) < 0.75 * view.T && Math.abs(view.xi) < 0.75 * view.X)
-      return;
+    if (Math.abs(view.tau) < 0.75 * view.T && Math.abs(view.xi) < 0.75 * view.X) return;
     const to = chart ? camera.nearest(view.tau, view.xi, view.T, view.X) : camera.nearestInPositions();
     if (!to || to.e === view.anchor.e || to.distance >= 0.98 * Math.hypot(view.tau / view.T, view.xi / view.X)) return;
     camera.reanchor(to);
   };
 
-  // {e, tau, xi, distance} of the collision of the chart with the least cost(tau, xi in the view's frame, collision);
-  // null if none is finite.
+  // {e, tau, xi, distance} of the collision of the chart with the least cost(tau, xi in the view's frame, e), or null.
   camera.least = cost => {
     const { chart: { collisions, tau, xi }, view: { V } } = camera;
     const { best, least } = microscopeLeast(0, collisions.length, i => cost(tau[i], xi[i] - V * tau[i], collisions[i]));
@@ -174,8 +169,7 @@ function microscopeCamera(world) {
     camera.chartFor();
   };
 
-  // Whether there are far too many collisions for a chart: a quick estimate from positions; false if positions do not
-  // resolve it.
+  // Whether collisions are far too many for a chart: a quick estimate from positions; false if these do not resolve it.
   camera.crowded = () => {
     const { view } = camera, { t: t0, x: x0 } = microscopeOrigin(world, view.anchor);
     if (!world.n || !world.keepsOrder || world.ring || view.X < 1e-6 * limits.X) return false;

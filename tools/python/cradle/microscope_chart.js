@@ -1,14 +1,12 @@
 // Charts: world lines in coordinates relative to a collision, and in positions when the whole run is in view.
 //
 // An anchor is {e, a}: collision e (e = -1 is the start) and the particle a with its right neighbour. In a chart, tau
-// is the time since then, and xi the distance from there in the frame in which these two have no momentum. Both are
-// local sums.
+// is the time since then, and xi the distance from there in the frame in which these two have no momentum: local sums.
 
 // The most particles and collisions that are followed: few if positions serve as well, many if they do not.
 const MICROSCOPE_CHART = { particles: 1500, collisions: 8000, deep: 60000 };
 
-// The anchor's two particles: {a, b, after, speedA, speedB}: velocities right after it in its own frame, and the
-// velocity of that frame in the lab.
+// The anchor's two particles: {a, b, gap, speedA, speedB, lab}: right after it, in its frame, whose velocity is lab.
 function microscopeAnchor(world, anchor) {
   const { e } = anchor;
   if (e < 0) {

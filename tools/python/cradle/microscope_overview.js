@@ -133,8 +133,7 @@ function microscopeVisible(world, view, row, height) {
   return [Math.max(0, lowest - 2), Math.min(world.particles - 1, highest + 2)];
 }
 
-// The strip: depth of the collisions against their number, with minimum and maximum of each column; and the position of
-// the view.
+// The strip: depth of collisions against their number, minimum and maximum of each column; the position of the view.
 function microscopeStrip(pen, world, view, box, colours, store) {
   const { n, depth } = world, columns = Math.max(1, Math.floor(box.width));
   if (store.columns !== columns) {

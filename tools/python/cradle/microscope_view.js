@@ -1,8 +1,7 @@
 // Drawing: world lines and collisions of a chart, axes with labels for any depth, and the strip of all depths.
 //
 // The view is {anchor, lab, tau, xi, T, X, V}: the middle of the picture at tau after the anchor's collision and xi
-// from it, its spans of time and space, and the velocity V of its frame relative to the anchor's (lab: the anchor's in
-// the lab).
+// from it, its spans of time and space, the velocity V of its frame in the anchor's, and that of this in the lab.
 
 const MICROSCOPE_MARGIN = { left: 72, right: 14, top: 12, bottom: 42, strip: 92 };
 const MICROSCOPE_PALETTE = [[58, 82, 164], [41, 138, 171], [86, 175, 128], [226, 170, 52], [214, 73, 58]];

@@ -2,12 +2,10 @@
 //
 // Nothing here is a difference of positions. A gap is the integral of the closing speed from a collision of its two
 // particles: the one with the shorter path. A time is the sum of intervals between collisions. A position in a chart
-// (microscope_chart.js) is the sum of such gaps from the collision that the chart is anchored at. So doubles keep their
-// relative precision down to 1e-308.
+// (microscope_chart.js) is the sum of such gaps from the anchor of the chart. So doubles are precise down to 1e-308.
 
 const microscopeTypes = { f8: Float64Array, u1: Uint8Array, u2: Uint16Array, u4: Uint32Array };
-// The kinds of collisions: by the law, elastic, a merge (numbered as `kind` in results), or particles pass through each
-// other by the law.
+// The kinds of collisions: by the law, elastic, a merge (numbered as `kind` in results), or a passage by the law.
 const MICROSCOPE = { byLaw: 0, elastic: 1, merge: 2, pass: 3 };
 
 // The typed array of {type, length, deflate}: byte planes, deflated, as base64.
@@ -154,8 +152,7 @@ function microscopeFlight(world, i, j) {
   return sum;
 }
 
-// The first of low .. high - 1 for which `before` is false (it is then false for all later ones); high if there is
-// none.
+// The first of low .. high - 1 for which `before` is false, as for all later ones; high if there is none.
 function microscopeFirst(low, high, before) {
   while (low < high) {
     const middle = (low + high) >> 1;
@@ -164,8 +161,7 @@ function microscopeFirst(low, high, before) {
   return low;
 }
 
-// The number from `low` to high - 1 with the least cost, the first of equal ones, and that cost: {best, least}; best is
-// -1 if none is finite.
+// The first of low .. high - 1 with the least cost, and that cost: {best, least}; best is -1 if none is finite.
 function microscopeLeast(low, high, cost) {
   let best = -1, least = Infinity;
   for (let i = low; i < high; ++i) {

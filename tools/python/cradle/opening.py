@@ -77,8 +77,7 @@ def open_file(path: str) -> h5py.File:
 
 
 def opened(path: str) -> h5py.File:
-    """Opens the file without locks, which some cluster file systems do not have; or, if the caller has it open, in
-    the same way as there."""
+    """Opens the file without locks, which some cluster file systems lack; if the caller has it open, as it did."""
     try:
         return h5py.File(path, "r", locking=False)
     except OSError as error:

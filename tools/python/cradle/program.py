@@ -55,8 +55,7 @@ def call(arguments: Sequence[str], accepted: Sequence[int] = (DONE,),
     child = None
     with ours, theirs, tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err:
         try:
-            # The call gets a session of its own: else Ctrl-C in a terminal would send it two signals, and the second
-            # ends it.
+            # The call gets its own session: else Ctrl-C in a terminal would send it a second signal, which ends it.
             with interrupts_later():
                 child = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=out, stderr=err,
                                          start_new_session=True, pass_fds=[theirs.fileno()], env=environment)

@@ -31,13 +31,11 @@ def open(path: str | os.PathLike, check: bool | None = None) -> Result:
 
 
 def so_far(path: str) -> Result:
-    """The rows recorded by a run in progress: the program writes them to a temporary file, which is removed once
-    open."""
+    """The rows recorded by a run in progress: the program writes them to a temporary file, removed once it is open."""
     with tempfile.TemporaryDirectory(prefix="cradle-") as folder:
         copy = os.path.join(folder, "so_far.h5")
         program.call(["export", path, "--result", copy])
-        result = Result(path, open_file(copy), sealed=True, in_progress=True)
-    return result
+        return Result(path, open_file(copy), sealed=True, in_progress=True)
 
 
 def part(kind, name: str, text: str) -> Any:
@@ -232,6 +230,5 @@ class Result:
 
 
 def fronts(result: Result) -> list[str]:
-    """The fronts that run into something: none towards a wall, which is all that there is to reach. (So a gas has none:
-    it is between two.)"""
+    """The fronts that run into something: none towards a wall, so that a gas, which is between two, has none."""
     return [f"front_{side}" for side in ("left", "right") if side not in result.scene.get("walls", {})]

@@ -30,8 +30,7 @@ def parse_toml(text: str) -> dict[str, Any]:
 
 
 def value_text(value: Any) -> str:
-    """A value as TOML: numbers with all their digits (a Decimal too, not a Fraction), texts quoted, lists in
-    brackets."""
+    """A value as TOML: numbers with all digits (a Decimal too, not a Fraction), texts quoted, lists in brackets."""
     if isinstance(value, (bool, str)):
         return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")  # written as in TOML
     if isinstance(value, Mapping):

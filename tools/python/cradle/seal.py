@@ -18,8 +18,7 @@ CHUNK = 1 << 16  # of LZMA2, at most
 
 
 def read_seal(path: str) -> tuple[int, int] | None:
-    """The length of the sealed part and its CRC-64; None without a seal. Raises Error if the seal does not fit the
-    file."""
+    """The length of the sealed part and its CRC-64; None without a seal. Raises Error if it does not fit the file."""
     with open(path, "rb") as file:
         length = file.seek(0, os.SEEK_END)
         file.seek(max(0, length - SIZE))

@@ -247,8 +247,7 @@ class Simulation:
         return getattr(self._run, f"{name}_text")
 
     def mpmath(self, name: str, digits: int | None = None):
-        """What decimals() gives as mpmath.mpf (one, or a list), with these digits, by default those of the longest
-        text."""
+        """What decimals() gives as mpmath.mpf, one or a list; digits: by default those of the longest text."""
         mpmath = imported("mpmath")
         texts = self.decimals(name)
         one = isinstance(texts, str)

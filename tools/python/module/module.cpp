@@ -1,5 +1,4 @@
-// The Python module cradle._live: a run that Python holds (tools/live/live_run.hpp). cradle/simulation.py makes the
-// class of it that users see.
+// The Python module cradle._live: a run that Python holds (tools/live/live_run.hpp), for cradle/simulation.py.
 //
 // Functions of the caller come as arguments of `advance` and `step` and are only borrowed, so that Python's garbage
 // collector sees all references. A call with such a function keeps the interpreter's lock, which the interpreter hands
@@ -66,8 +65,7 @@ void poll() {
   if (PyErr_CheckSignals() != 0) throw py::error_already_set();
 }
 
-// MPFR has one number of digits in a process at a time: that of the runs that are in a call. Made and destroyed with
-// the interpreter's lock.
+// MPFR has one number of digits in a process: that of runs in a call. Made and destroyed with the interpreter's lock.
 class Digits {
  public:
   explicit Digits(const Scene& scene) : counted_(scene.run.precision == Precision::mpfr) {
@@ -222,8 +220,7 @@ PYBIND11_MODULE(_live, module) {
       .def_property_readonly("time_text", reads([](SceneRun& run) { return run.time().text(); }))
       .def_property_readonly("energy", reads([](SceneRun& run) { return run.energy().value; }))
       .def_property_readonly("energy_text", reads([](SceneRun& run) { return run.energy().text(); }))
-      // None while the run is in progress, then how it ended: the outcome, the exit status of `cradle run`, what that
-      // prints, and its warning.
+      // None during the run, then how it ended: outcome, exit status of `cradle run`, what that prints, its warning.
       .def_property_readonly("over", reads([](SceneRun& run) -> py::object {
                                const RunOutcome* over = run.over();
                                if (over == nullptr) return py::none();

@@ -70,8 +70,8 @@ def rate(result, name):
 
 
 def rates(result, since, units):
-    """Collisions per l/2u0, dissipative and elastic: mean and standard deviation between samples, from SETTLED after
-    a given time until the rows end."""
+    """Collisions per l/2u0, dissipative and elastic: mean and standard deviation, from SETTLED after a given time until
+    the rows end."""
     time, every = rate(result, "collisions")
     elastic = rate(result, "collisions_below_cutoff")[1]
     used_up = result.setting("initial", "particles", np.nan) * units.t  # the sticky gas has the last of equal rows
@@ -150,8 +150,7 @@ def draw_distributions(snapshots, scale, units, panels):
         particles, gap = core_of(snapshot)
         v = (snapshot["v"][particles] - np.median(snapshot["v"][particles])) / scale
         density, edges = np.histogram(v, bins=50, range=(-0.75, 0.75))
-        left.stairs(density / len(v) / (edges[1] - edges[0]), edges, color=colour,
-                    label=units.at(snapshot["time"]))
+        left.stairs(density / len(v) / (edges[1] - edges[0]), edges, color=colour, label=units.at(snapshot["time"]))
         gap = gap[gap > 0] / gap.mean()
         density, edges = np.histogram(gap, bins=np.geomspace(1e-3, 1e2, 41))
         right.stairs(density / len(gap) / np.diff(edges), edges, color=colour)
@@ -162,8 +161,8 @@ def draw_distributions(snapshots, scale, units, panels):
 
 
 def draw_spacetime(snapshots, units, panels):
-    """Paths of particles that are evenly spread over the core at the end, relative to the one in its middle.
-    Identical particles keep their order."""
+    """Paths of particles evenly spread over the core at the end, relative to the one in its middle: all keep their
+    order."""
     core, _ = core_of(snapshots[-1])
     particles = snapshots[-1]["index"][core][::max(1, len(core) // PATHS)]
     ax = panels(figsize=(5.8, 4.6))

@@ -28,8 +28,7 @@ def hold_the_mass(result):
 
 
 def followed(heaviest):
-    """The columns, reordered so that each follows one cluster; the line is interrupted when another cluster takes
-    its place."""
+    """The columns, reordered so that each follows one cluster, and where another cluster takes its place."""
     order = np.tile([0, 1], (len(heaviest["x"]), 1))
     broken = np.zeros(order.shape, bool)
     index = heaviest.get("index")
@@ -116,9 +115,8 @@ def draw_force(ax, force, units):
 
 
 def envelope(time, values, begin=0.0):
-    """The envelope: the samples; centre and largest value of each bin of the logarithm of time; the bins that are
-    fitted (bins FIRST and later that begin after `begin` and have ENOUGH samples); the fit in logarithms, exponent
-    first."""
+    """The envelope: the samples; centre and largest value of each bin of the logarithm of time; which bins are fitted
+    (from FIRST on, after `begin`, with ENOUGH samples); the fit in logarithms, exponent first."""
     known = np.isfinite(values) & (values > 0) & (time > 0)
     time, values = time[known], values[known]
     edges = np.log10(time[-1]) - DECADES + DECADES * np.arange(BINS + 1) / BINS

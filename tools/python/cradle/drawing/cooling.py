@@ -40,8 +40,7 @@ def sticky_law(result, time):
 
 
 def cooled(result):
-    """Which samples come after the first meetings, their times, and the energies per particle: its own and the sticky
-    gas's."""
+    """Which samples come after the first meetings, their times, energies per particle, and those of the sticky gas."""
     particles, speed, spacing = ring_of(result)
     later = result.means["time"] * speed / spacing > 0.03
     time = result.means["time"][later]
@@ -69,8 +68,7 @@ def draw_cooling(result, theory, panels):
     if merging:
         axes[-1].loglog(time, 1 - series["merges"][later] / particles, color=BLUE, lw=1.6, label="simulation")
         if applies:
-            axes[-1].plot(time, CLUSTERS / ENERGY * law / speed ** 2, "k--",
-                          label=r"sticky gas, $1.328\,\tau^{-2/3}$")
+            axes[-1].plot(time, CLUSTERS / ENERGY * law / speed ** 2, "k--", label=r"sticky gas, $1.328\,\tau^{-2/3}$")
         axes[-1].set_ylabel(r"clusters per particle")
         axes[-1].legend(loc="lower left")
     axes[-1].set_xlabel(rf"time ($t$)   ($\tau=st/a$, $s={speed:.4g}$, $a={spacing:.4g}$)")
@@ -87,8 +85,7 @@ def draw_ratio(ax, time, ratio):
 
 
 def draw_field(result, panels):
-    """Velocity against position on the ring, or on a part of it: larger clusters are heavier, and velocities form a
-    saw-tooth."""
+    """Velocity against position on a part of the ring: larger clusters are heavier, velocities form a saw-tooth."""
     snapshots = thinned(result.snapshots, 4)
     axes = panels.stacked(len(snapshots), height=1.8, sharex=True)
     last = snapshots[-1]

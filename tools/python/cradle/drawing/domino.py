@@ -23,8 +23,7 @@ def order(result):
 
 
 def first_hits(result):
-    """Heavy particles, and how much later than in the closed form each is first hit, in units of the time between
-    hits."""
+    """Heavy particles, and how much later than in the closed form each is first hit, in times between two hits."""
     events, initial = result.events, result.scene["initial"]
     step = Fraction(str(initial.get("spacing", 1))) / Fraction(str(initial.get("speed", 1)))
     right = events["right"].astype(np.int64)
@@ -50,8 +49,7 @@ def draw(result, panels):
     precision = str(result.attributes.get("precision", ""))
     below.loglog(particle[size > 0], size[size > 0], "o", ms=2.5, color=BLUE, label=precision)
     below.set(xlabel="heavy particle $n$", ylabel=r"$|t_n-(n-c_k)|\,u/a$")
-    exact = int((size == 0).sum())
-    note(below, f"k = {order(result)}; {exact} of {len(size)} exact to the digits kept")
+    note(below, f"k = {order(result)}; {(size == 0).sum()} of {len(size)} exact to the digits kept")
     below.legend(loc="upper left")
 
 

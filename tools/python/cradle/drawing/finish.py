@@ -1,5 +1,4 @@
-"""What every picture gets when it is drawn: the title of its scene, labels on axes of less than a decade, and the name
-of the paper whose equations it cites."""
+"""What every picture gets: the title of its scene, labels on axes of less than a decade, the name of a cited paper."""
 import re
 import textwrap
 

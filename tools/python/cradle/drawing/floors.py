@@ -1,6 +1,5 @@
-"""A shaken floor: the height of one ball once a period against the amplitude, with the place of the first period
-doubling; the height of a column of beads against X = N (1 - r), beside that of nearly elastic ones. Formulas:
-core/laws/README.md."""
+"""A shaken floor (formulas: core/laws/README.md): the height of one ball once a period against the amplitude, with the
+first period doubling; the height of a column of beads against X = N (1 - r), beside that of nearly elastic ones."""
 import numpy as np
 
 from .style import BLUE, GREY, ORANGE, shaded

@@ -29,8 +29,7 @@ def parted(path, length):
 
 
 def draw_particles(result, units, panels):
-    """Paths, energy and collisions (at a collapse collisions alone), and how intervals (from events) or gaps
-    shrink."""
+    """Paths; energy and collisions, at a collapse collisions alone; and how intervals (from events) or gaps shrink."""
     shrinking = {"interval", "closing_speed"} <= result.events.keys()
     gaps = not shrinking and len(result.snapshots) > 1 and len(result.snapshots[0]["x"]) > 1
     axes = panels.stacked(2 + (shrinking or gaps))

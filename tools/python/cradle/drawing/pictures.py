@@ -1,6 +1,5 @@
 """Which pictures a result has, and writing them. Every kind is a module with pictures(result, theory, units), which
-yields a name, the function that draws the picture, and its arguments before `panels`; nothing if the result does not
-have the data."""
+yields a name, the function that draws the picture, and its arguments before `panels`; nothing without the data."""
 import contextlib
 import os
 

@@ -1,6 +1,5 @@
 """The places of particles: structure factor and pair distribution, averaged with standard errors and at times; of a
-sweep those of all points, a panel for each time. The line is that of independent places, 1, of which identical elastic
-particles in equilibrium are an example."""
+sweep those of all points, a panel for each time. The line, 1, is that of independent places, as in equilibrium."""
 from .averages import draw_points as draw_mean
 from .style import ORANGE, beside, distinct, shaded, shades, thinned
 from .sweep import label_of

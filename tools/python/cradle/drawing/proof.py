@@ -35,8 +35,7 @@ def draw_trust(result, panels):
 
 
 def draw_certificate(result, units, panels):
-    """The smallest gap, the largest radius of a position, and the ratio of a gap's radius to the gap; it must stay
-    below 1."""
+    """The smallest gap, the largest radius of a place, and the ratio of a gap's radius to the gap: it stays below 1."""
     proof = result.certificate
     collapsing = len(result.collapse) > 0  # there time says nothing: all collisions are at its end
     time = proof["collisions"].astype(float) if collapsing else proof["time"] / units.t

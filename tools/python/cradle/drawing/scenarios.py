@@ -38,8 +38,7 @@ def curves(result):
 
 
 def estimated(points, name, estimate):
-    """Losses, and the estimate for each from the numbers of its replicas; points with fewer than ENOUGH are left
-    out."""
+    """Losses, and the estimate for each from the numbers of its replicas; none for fewer than ENOUGH."""
     known = [(point.setting("law", "loss"), finite(point.replicas[name])) for point in points]
     rows = [(loss, *estimate(values)) for loss, values in known if len(values) >= ENOUGH]
     return np.array(rows).reshape(-1, 4).T

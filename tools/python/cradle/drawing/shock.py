@@ -37,8 +37,7 @@ def averaged(snapshot, bins=50):
 
 
 def merged(profile):
-    """Bin centres and mean velocities. Bins are merged until half of them have BIN_PARTICLES, to no fewer than five
-    bins."""
+    """Bin centres and mean velocities. Bins are merged, to five at least, until half of them have BIN_PARTICLES."""
     x, count = profile["x"], profile["density"] * (profile["x"][1] - profile["x"][0])
     if not (count > 0).any():
         return x[:0], x[:0]

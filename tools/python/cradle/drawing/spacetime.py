@@ -14,9 +14,8 @@ def pictures(result, _theory, units):
 
 
 def legs_of(result):
-    """For each particle a list of (times, positions, mass, known). Between two snapshots a particle has the first
-    one's velocity until its first collision, and the last one's after its last collision; between these two
-    collisions its path is not known."""
+    """For each particle a list of (times, positions, mass, known). Between two snapshots a particle has the first one's
+    velocity until its first collision, and the last one's after its last; between these two its path is not known."""
     left, right, time = (np.asarray(result.events.get(name, ())) for name in ("left", "right", "time"))
     legs = {}
     for before, after in zip(result.snapshots[:-1], result.snapshots[1:]):
@@ -71,8 +70,7 @@ def particle_colours(count):
 
 
 def draw_cradle(ax, snapshots, units):
-    """Single particles never change places: the clusters from left to right take them in order. Circles are not to
-    scale."""
+    """Single particles never change places: clusters from left to right take them in order. Circles: not to scale."""
     x = np.concatenate([s["x"] for s in snapshots]) / units.x
     size = 0.032 * max(np.ptp(x), 1e-12)
     owner = np.repeat(np.arange(len(snapshots[0]["m"])), snapshots[0]["m"].round().astype(int))

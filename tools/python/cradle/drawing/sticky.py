@@ -1,6 +1,5 @@
-"""Fig. 1: rows of sticky particles and the weak solution. The velocity is a fixed step u_l, 0, u_r. The density is
-that of the rows and a delta peak, which begins at m_0 and grows at sqrt(rho_l rho_r) (u_l - u_r), or 2 rho_0 u_0 for
-equal rows."""
+"""Fig. 1: rows of sticky particles and the weak solution. The velocity is a fixed step u_l, 0, u_r. The density is that
+of the rows and a delta peak of mass m_0 + sqrt(rho_l rho_r) (u_l - u_r) t, m_0 + 2 rho_0 u_0 t for equal rows."""
 import numpy as np
 
 from .style import BLUE, GREY, ORANGE, note, times_of, thinned

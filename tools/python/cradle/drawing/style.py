@@ -99,8 +99,7 @@ class Units:
 
 
 class Panels:
-    """Makes the panels of a picture, once: called like plt.subplots it returns new axes or, one for each panel, those
-    that were given."""
+    """Makes the panels of a picture, once: called like plt.subplots it returns new axes, or those that were given."""
 
     def __init__(self, given=None):
         self.given, self.figure = given, None
@@ -138,8 +137,7 @@ class Panels:
 
 
 def shade_range():
-    """The part of the colour map that stands out from the page: without the palest yellow, in the dark without the
-    darkest violet."""
+    """The part of the colour map that stands out: without the palest yellow, in the dark without the darkest violet."""
     return (0.38, 1.0) if shown_dark else (0.0, 0.88)
 
 

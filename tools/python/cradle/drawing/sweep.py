@@ -103,8 +103,7 @@ def draw_cooling(result, panels):
 # ---- the width of the interaction zone
 
 def draw_widths(result, keys, panels):
-    """Fig. 8. The bar shows the width to u_crit; the upper bar extends to u0/|slope|, where u+ would be 0 as in
-    (13)."""
+    """Fig. 8. The bar shows the width to u_crit; the upper bar extends to u0/|slope|, where u+ is 0 as in (13)."""
     width = result.sweep["zone_width"]
     first = result.points[0] if result.points else result
     speed = keys.get(SPEED, np.full(len(width), first.setting("initial", "speed", 0.5)))

@@ -31,8 +31,7 @@ class Theory:
         return points[0][1] if points else None
 
     def equation(self, *quantities):
-        """The form in which the table is cited, `Eq. (7)` or `Eqs. (4), (5)`; what has no equation of the paper is
-        named by the text itself, `Haff 1983`."""
+        """How the table is cited, `Eq. (7)` or `Eqs. (4), (5)`; what is not of the paper by its text, `Haff 1983`."""
         cited = [next((row[4] for row in self.rows if row[0] == quantity), "") or quantity for quantity in quantities]
         numbers = [re.search(r"\((\d+)\)", text) for text in cited]
         if not all(numbers):

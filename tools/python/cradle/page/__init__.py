@@ -9,8 +9,7 @@ from ..result import Result, open
 
 
 def report(result: Result | str | os.PathLike, output: str | os.PathLike | None = None, force: bool = True) -> str:
-    """Writes one self-contained HTML file and returns its path: no network, light and dark, prints; same file, same
-    bytes.
+    """Writes one HTML file that needs nothing else and returns its path: light and dark, prints; same file, same bytes.
 
     result: an opened result, its path, or FILE.part of a run in progress.
     output: by default the result's path with .html. Written beside its place and renamed.

@@ -86,8 +86,7 @@ def lead(result: Result) -> str:
 
 
 def picture(draw, caption: str) -> str:
-    """The elements for a picture of cradle.plot.drawings: the style sheet shows the one that suits the page, and prints
-    the light one. Same picture, same text."""
+    """A picture of cradle.plot.drawings, light and dark: the style sheet shows one. Same picture, same text."""
     return "".join(f'<img class="{name}" alt="{html.escape(caption)}" src="{data_of(draw, name == "dark")}">'
                    for name in ("light", "dark"))
 

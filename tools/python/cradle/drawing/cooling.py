@@ -58,7 +58,7 @@ def draw_cooling(result, theory, panels):
     if applies:
         axes[0].plot(time, law, "k--", label=r"sticky gas, $0.2214\,s^2\tau^{-2/3}$")
         draw_ratio(axes[1], time, energy / law)
-    known = [name for name in dict.fromkeys(row[0] for row in theory.rows) if name.startswith("energy")]
+    known = [name for name in dict.fromkeys(row["quantity"] for row in theory.rows) if name.startswith("energy")]
     for quantity, colour in zip((name for name in known if "sticky" not in name), (ORANGE, GREEN, RED)):
         t, value = theory.curve(quantity)
         shown = (t >= time[0]) & (value / particles > 0.3 * energy.min())

@@ -10,10 +10,10 @@ import math
 import numpy as np
 
 from .averages import draw_points
+from .cooling import ring_of
 from .style import BLUE, ORANGE, note
 
-PANELS = (("msd", r"mean-square displacement ($l^2$)"),
-          ("vacf", r"$\langle v(0)\,v(t)\rangle$ ($l^2/t^2$)"))
+PANELS = (("msd", r"mean-square displacement ($l^2$)"), ("vacf", r"$\langle v(0)\,v(t)\rangle$ ($l^2/t^2$)"))
 
 
 def pictures(result, _theory, _units):
@@ -44,14 +44,12 @@ def displacement(t):
 def exact(result, lags):
     """Mean squares and autocorrelations at these lags; None of others than such particles."""
     initial = result.scene.get("initial", {})
-    if result.setting("law", "restitution", 0.0) != 1 or "masses" in initial or "random_masses" in initial:
+    kind = [initial.get(key) for key in ("type", "positions", "velocities")]
+    if (kind != ["ring", "poisson", "gaussian"] or result.setting("law", "restitution", 0.0) != 1
+            or {"masses", "random_masses"} & initial.keys()):
         return None
-    if (result.word("initial", "type"), result.word("initial", "positions"), result.word("initial", "velocities")) != (
-            "ring", "poisson", "gaussian"):
-        return None
-    particles, variance = result.setting("initial", "particles"), result.setting("initial", "variance", 1.0)
-    spacing = result.setting("initial", "length", particles) / particles
-    unit = spacing / math.sqrt(variance)  # of time
+    particles, speed, spacing = ring_of(result)
+    unit = spacing / speed  # of time
 
     def squares(t):
         return displacement(t) - t ** 2 / particles
@@ -60,7 +58,7 @@ def exact(result, lags):
         step = 0.02 * t
         return (squares(t + step) - 2 * squares(t) + squares(t - step)) / (2 * step ** 2)
     times = np.asarray(lags) / unit
-    return (spacing ** 2 * np.array([squares(t) for t in times]), variance * np.array([products(t) for t in times]))
+    return spacing ** 2 * np.array([squares(t) for t in times]), speed ** 2 * np.array([products(t) for t in times])
 
 
 def draw(result, panels):

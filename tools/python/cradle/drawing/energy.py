@@ -25,12 +25,11 @@ def draw_energy(result, theory, units, panels):
     cited = theory.equation("energy").replace("E_loss", r"$E_\mathrm{loss}$")
     for quantity, line, label in (("energy", ":", cited), ("energy_sticky", "--", "sticky gas")):
         t, value = theory.curve(quantity)
-        if quantity == "energy" and len(t):  # the linear profiles are meant for the expanding front
+        if quantity == "energy":  # the linear profiles are meant for the expanding front
             shown = t <= 1.3 * (theory.number("turnover_time") or np.inf)
-            t, value = t[shown], value[shown]
-        if quantity == "energy_sticky":  # a law for late times begins above the energy at the start
+        else:  # a law for late times begins above the energy at the start
             shown = value <= 1.001 * series["energy"][0]
-            t, value = t[shown], value[shown]
+        t, value = t[shown], value[shown]
         if len(t) and t[-1] > 0.02 * series["time"][-1]:  # else it would not be seen
             top.plot(t / units.t, value / units.energy, "k" + line, lw=1.3, label=label)
     onset = theory.number("collapse_onset_time")

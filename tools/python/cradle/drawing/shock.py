@@ -61,9 +61,8 @@ def draw_shock(result, theory, units, panels):
     axes[-1].set_xlabel(units.position_label())
     heavy = result.law == "wet" and all("mass_density" in p for p in profiles)
     density = "mass_density" if heavy else "density"
-    named = set()
+    named = {group["time"] for group in snapshots}
     if snapshots:
-        named = {group["time"] for group in snapshots}
         if len(snapshots) < len(result.snapshots):
             note(axes[0], f"{len(snapshots)} of {len(result.snapshots)} snapshots")
         draw_velocities(axes.pop(0), snapshots, theory, units, colour, name)

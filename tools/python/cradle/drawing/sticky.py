@@ -15,11 +15,9 @@ def rows_of(result):
     if "left" not in result.scene["initial"]:
         density, speed = 1 / result.setting("initial", "spacing", 1.0), result.setting("initial", "speed", 0.5)
         return (density, speed), (density, -speed), (0.0, 0.0)
-    pairs = [tuple(result.setting("initial", f"{part}.{key}", default) for key, default in keys)
-             for part, keys in (("left", (("density", 1.0), ("speed", 0.5))),
-                                ("right", (("density", 1.0), ("speed", -0.5))),
-                                ("centre", (("mass", 0.0), ("speed", 0.0))))]
-    return tuple(pairs)
+    return [(result.setting("initial", f"{part}.{key}", default), result.setting("initial", f"{part}.speed", speed))
+            for part, key, default, speed in (("left", "density", 1.0, 0.5), ("right", "density", 1.0, -0.5),
+                                              ("centre", "mass", 0.0, 0.0))]
 
 
 def peak(snapshot):
@@ -96,9 +94,8 @@ def draw_mass(ax, result, units, formula, core, growth):
     ax.plot(time / units.t, core + growth * time, color=GREY, lw=5, alpha=0.5,
             label=rf"{formula}, ${core:.4g}+{growth * units.t:.4g}\,t$")
     ax.plot(time[collided] / units.t, cloud[collided], color=BLUE, label="simulation")
-    heaviest = np.array([(s["time"], peak(s)[2]) for s in result.snapshots])
-    ax.plot(heaviest[:, 0] / units.t, heaviest[:, 1], "o", color=ORANGE, ms=5,
-            label="heaviest particle of the snapshots")
+    times, heaviest = np.array([(s["time"], peak(s)[2]) for s in result.snapshots]).T
+    ax.plot(times / units.t, heaviest, "o", color=ORANGE, ms=5, label="heaviest particle of the snapshots")
     off = np.abs(cloud - core - growth * time)[collided]
     ax.legend(loc="upper left", title=f"largest difference {off.max():.2g}" if off.size else None, title_fontsize=7.5)
     ax.set(xlabel=units.time_label(), ylabel="mass of the cluster $M$", ylim=(0, None),

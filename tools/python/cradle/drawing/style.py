@@ -29,9 +29,8 @@ SETTINGS = {
 
 
 def name_colours(colours):
-    known = matplotlib.colors.get_named_colors_mapping()
     for name, colour in colours.items():
-        known[name] = colour
+        matplotlib.colors.get_named_colors_mapping()[name] = colour
 
 
 name_colours(LIGHT)
@@ -195,8 +194,8 @@ def thinned(items, most=7):
     return [items[i] for i in np.unique(np.linspace(0, len(items) - 1, most).round().astype(int))]
 
 
-def beside(axes, **options):
+def beside(axes):
     """Adds a legend to the right of the panel; returns it, or None if there is nothing to name."""
     if axes.get_legend_handles_labels()[0]:
-        return axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), **options)
+        return axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
     return None

@@ -10,13 +10,12 @@ class Theory:
     """Predictions in long format: quantity, equation, form, t, value; an empty t marks a number."""
 
     def __init__(self, text):
-        self.rows = [(row["quantity"], row["form"], float(row["t"]) if row["t"] else None, float(row["value"]),
-                      row["equation"]) for row in csv.DictReader(io.StringIO(text))]
+        self.rows = list(csv.DictReader(io.StringIO(text)))
 
     def _pick(self, quantity, with_time):
         for form in ("continuous", "discrete", ""):  # never the misprinted one
-            found = [(t, value) for name, kind, t, value, _ in self.rows
-                     if name == quantity and kind == form and (t is not None) == with_time]
+            found = [(float(row["t"] or 0), float(row["value"])) for row in self.rows
+                     if (row["quantity"], row["form"], row["t"] != "") == (quantity, form, with_time)]
             if found:
                 return sorted(found) if with_time else found
         return []
@@ -32,7 +31,8 @@ class Theory:
 
     def equation(self, *quantities):
         """How the table is cited, `Eq. (7)` or `Eqs. (4), (5)`; what is not of the paper by its text, `Haff 1983`."""
-        cited = [next((row[4] for row in self.rows if row[0] == quantity), "") or quantity for quantity in quantities]
+        equations = {row["quantity"]: row["equation"] for row in reversed(self.rows)}  # the first of each
+        cited = [equations.get(quantity) or quantity for quantity in quantities]
         numbers = [re.search(r"\((\d+)\)", text) for text in cited]
         if not all(numbers):
             return ", ".join(dict.fromkeys(cited))

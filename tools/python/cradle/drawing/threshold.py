@@ -15,8 +15,7 @@ def draw(table, panels):
     is the least. They are differences of the decimals, since doubles do not resolve all of them."""
     about = table.attributes
     values = table["value_digits"].fractions()
-    low, high = (values[table["value_digits"].tolist().index(about[f"{end}_digits"])]
-                 for end in ("low", "high"))
+    low, high = (values[table["value_digits"].tolist().index(about[f"{end}_digits"])] for end in ("low", "high"))
     distance = np.array([float(abs(value - (low + high) / 2)) for value in values])
     like_low = table["outcome"].values == about["low_outcome"]
     closed = table["how"].values == "closed form"

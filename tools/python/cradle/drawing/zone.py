@@ -48,17 +48,15 @@ def draw_zone(result, units, panels):
     mass.set_yscale("log")
     note(mass, "peaks: the heavy clusters; shaded: $2L$ of Eq. (13)" if formed else
          "no zone yet: $u_+$ has not fallen to $u_\\mathrm{crit}$")
+    velocity.axhline(0, color=GREY, lw=0.6)
     if formed:
         for ax in (velocity, density, mass):
             ax.axvspan(-half, half, color=GREY, alpha=0.18, lw=0, zorder=0)
-    velocity.axhline(0, color=GREY, lw=0.6)
-    top = velocity.get_ylim()[1]
-    if formed:
-        velocity.set_ylim(1.05 * velocity.get_ylim()[0], 2.55 * top)
+        bottom, top = velocity.get_ylim()
+        velocity.set_ylim(1.05 * bottom, 2.55 * top)
         draw_width(velocity, measured, error, longer=measured / (1 - slow / speed) if slow < speed else np.nan,
                    model=2 * half, top=top)
-    velocity.set_yticks([-speed / units.v, 0, speed / units.v])
-    velocity.set_ylabel(units.velocity_label())
+    velocity.set(yticks=[-speed / units.v, 0, speed / units.v], ylabel=units.velocity_label())
     density.set(ylabel=units.label("density $n$", r"density $n\,/\,n_0$"), ylim=(0, None))
     mass.set(ylabel=units.label(r"mass density $\rho$", r"mass density $\rho\,/\,\rho_0$"),
              xlabel=units.position_label())

@@ -7,14 +7,10 @@ Cells of text begin with `# %% [markdown]`; their lines are comments. The notebo
 from __future__ import annotations
 
 import json
-import os
+from pathlib import Path
 
-FOLDER = os.path.join(os.path.dirname(os.path.abspath(__file__)), "examples")
+FOLDER = Path(__file__).resolve().parent / "examples"
 NAMES = ("live_collapse", "ensemble_statistics", "precision_cost")
-
-
-def path(name: str, ending: str) -> str:
-    return os.path.join(FOLDER, name + ending)
 
 
 def cell(kind: str, lines: list[str]) -> dict:
@@ -25,10 +21,10 @@ def cell(kind: str, lines: list[str]) -> dict:
     return {"cell_type": kind, "metadata": {}, **code, "source": text.splitlines(keepends=True)}
 
 
-def notebook(script: str) -> str:
-    """The text of a notebook with the cells of the script."""
+def notebook(name: str) -> str:
+    """The text of the notebook with the cells of the script of this name."""
     cells: list[tuple[str, list[str]]] = []
-    for line in script.splitlines():
+    for line in (FOLDER / f"{name}.py").read_text("utf-8").splitlines():
         if line.startswith("# %%"):
             cells.append(("markdown" if "[markdown]" in line else "code", []))
         else:
@@ -39,12 +35,6 @@ def notebook(script: str) -> str:
     return json.dumps(whole, indent=1) + "\n"
 
 
-def from_script(name: str) -> str:
-    with open(path(name, ".py"), encoding="utf-8") as file:
-        return notebook(file.read())
-
-
 if __name__ == "__main__":
     for each in NAMES:
-        with open(path(each, ".ipynb"), "w", encoding="utf-8") as written:
-            written.write(from_script(each))
+        (FOLDER / f"{each}.ipynb").write_text(notebook(each), "utf-8")

@@ -11,13 +11,11 @@ import subprocess
 import tempfile
 import time
 
-NAMES = ("chromium", "chromium-browser", "google-chrome", "chrome")
-
 
 def find():
     """The browser, $CRADLE_CHROMIUM first, or None."""
-    names = (os.environ.get("CRADLE_CHROMIUM", ""), *NAMES)
-    return next((found for name in names if (found := shutil.which(name))), None)
+    names = (os.environ.get("CRADLE_CHROMIUM", ""), "chromium", "chromium-browser", "google-chrome", "chrome")
+    return next(filter(None, map(shutil.which, names)), None)
 
 
 class Browser:
@@ -129,15 +127,11 @@ class Browser:
         if not os.environ.get("CRADLE_SHOTS"):
             return
         size = self.call("Page.getLayoutMetrics")["cssContentSize"]
-        width, height = size["width"], min(size["height"], most)
-        shot = self.call("Page.captureScreenshot", captureBeyondViewport=True,
-                         clip={"x": 0, "y": 0, "width": width, "height": height, "scale": 1})
+        clip = size | {"height": min(size["height"], most), "scale": 1}
+        shot = self.call("Page.captureScreenshot", captureBeyondViewport=True, clip=clip)
         with open(os.path.join(os.environ["CRADLE_SHOTS"], f"{name}.png"), "wb") as file:
             file.write(base64.b64decode(shot["data"]))
 
-    def print_to(self, path):
-        """As PDF; returns its number of pages."""
-        data = base64.b64decode(self.call("Page.printToPDF", preferCSSPageSize=True, printBackground=True)["data"])
-        with open(path, "wb") as file:
-            file.write(data)
-        return data.count(b"/Type /Page\n") + data.count(b"/Type /Page ") + data.count(b"/Type/Page/")
+    def printed(self):
+        """The page as PDF."""
+        return base64.b64decode(self.call("Page.printToPDF", preferCSSPageSize=True, printBackground=True)["data"])

@@ -57,6 +57,7 @@ def written(path, content):
         file.write(content)
     return path
 
+
 SHOCK = {"initial.particles": 200, "run.until": 60, "output.snapshots": [20, 60], "output.profiles.times": [30, 60],
          "output.series.points": 20}
 

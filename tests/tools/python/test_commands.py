@@ -116,8 +116,7 @@ class Progress(small.Case):
     def test_ctrl_c_interrupts_the_program_which_can_go_on(self):
         until = 10000
         while True:  # until the run is so long that the signal comes before its end; elastic particles never stop
-            keys = {"law.type": "inelastic", "law.restitution": 1, "initial.particles": 1000, "run.until": until,
-                    "output.checkpoint.every_seconds": 0.1}
+            keys = small.ENDLESS | {"initial.particles": 1000, "run.until": until}
             code = f"import cradle; cradle.run('cooling', set={keys}, output='stopped.h5')"
             child = subprocess.Popen([sys.executable, "-c", code], stderr=subprocess.PIPE, text=True)
             while not os.path.exists("stopped.h5.part") and child.poll() is None:

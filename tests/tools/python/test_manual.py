@@ -18,7 +18,7 @@ import sys
 import tempfile
 import time
 import unittest
-from typing import NamedTuple
+from collections import namedtuple
 
 import matplotlib.pyplot as plt
 
@@ -31,16 +31,7 @@ SHOWN = os.environ.get("CRADLE_MANUAL_SHOWN")  # set: shows what each block prin
 
 BLOCK = re.compile(r"(?:^<!-- (?P<mark>not run|status): (?P<said>.+?) -->\n)?"
                    r"^```(?P<language>\w+)(?: title=\"(?P<title>[^\"]+)\")?\n(?P<text>.*?)^```$", re.M | re.S)
-
-
-class Block(NamedTuple):
-    language: str
-    title: str
-    text: str
-    mark: str
-    said: str
-    begin: int
-    end: int
+Block = namedtuple("Block", [*BLOCK.groupindex, "begin", "end"])
 
 
 def blocks(page):
@@ -135,10 +126,6 @@ class Manual(unittest.TestCase):
             self.assertEqual({block.language for block in found} - known, set(), page)
 
 
-def runs(page):
-    return lambda self: self.page(page)
-
-
 for path in pages():
     name = os.path.basename(path)[:-3].replace("-", "_").lower()
-    setattr(Manual, f"test_page_{name}", runs(path))
+    setattr(Manual, f"test_page_{name}", lambda self, path=path: self.page(path))

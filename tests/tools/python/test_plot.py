@@ -18,19 +18,13 @@ class Pictures(small.Case):
 
     def test_are_those_of_the_program_to_the_byte(self):
         for make in small.ALL:
+            self.assertLessEqual(set(cradle.plot.names(make())), set(cradle.plot.PICTURES))
             for extension in (".png", ".svg") if make is small.shock else (".svg",):
                 made = cradle.plot.save(make(), "ours" + extension)
                 printed = program.call(["plot", make(), "-o", "theirs" + extension, "--force"]).out.split()
                 self.assertEqual([name.replace("ours", "theirs") for name in made], printed)
                 for ours, theirs in zip(made, printed):
                     self.assertTrue(filecmp.cmp(ours, theirs, shallow=False), ours)
-
-    def test_every_function_draws_what_is_named(self):
-        for make in small.ALL:
-            with cradle.open(make()) as result:
-                for name in cradle.plot.names(result):
-                    figure = getattr(cradle.plot, name)(result)
-                    self.assertGreater(len(figure.axes), 0, name)
 
     def test_the_module_is_the_main_picture_and_completes_to_pictures(self):
         figure = cradle.plot(small.shock())
@@ -112,9 +106,7 @@ class Pictures(small.Case):
         figure, axes = plt.subplots(2, 2)
         given = cradle.plot.energy(small.shock(), axes=axes[:, 1])
         self.assertIs(given, figure)
-        self.assertEqual(len(axes[0, 0].get_lines()), 0)
-        self.assertGreater(len(axes[0, 1].get_lines()), 0)
-        self.assertGreater(len(axes[1, 1].get_lines()), 0)
+        self.assertEqual([len(ax.get_lines()) > 0 for ax in axes.flat], [False, True, False, True])
         self.refused(2, r"found 3\): give 2", cradle.plot.energy, small.shock(), axes=axes.ravel()[:3])
 
     def test_are_drawn_for_dark_pages_too(self):

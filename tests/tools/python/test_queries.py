@@ -92,6 +92,5 @@ class Settings(small.Case):
                                        "initial": {"type": "rows"}})["law.type"], "sticky")
 
     def test_a_table_under_a_dotted_key_replaces(self):
-        set = {"output.profiles": {"times": [10]}}
         self.assertIsNotNone(self.value("output.profiles.range", {"output.profiles.range": [-9, 9]}))
-        self.assertIsNone(self.value("output.profiles.range", set))
+        self.assertIsNone(self.value("output.profiles.range", {"output.profiles": {"times": [10]}}))

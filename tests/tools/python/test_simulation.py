@@ -51,7 +51,7 @@ def shock(**more):
     return cradle.Simulation("fig2", set=small.SHOCK | more)
 
 
-class Stopped(small.Case):
+class Files(small.Case):
     def test_a_run_that_is_stopped_can_be_written(self):
         sim = shock(**EVENTS)
         sim.every(30, mock.Mock(side_effect=KeyboardInterrupt))
@@ -73,9 +73,7 @@ class Stopped(small.Case):
         for call in (sim.stop, sim.advance):
             self.refused(2, "the run is over", call)
 
-
-class Bytes(small.Case):
-    def test_those_of_cradle_run(self):
+    def test_have_the_bytes_of_cradle_run(self):
         for name, (scene, settings) in SCENES.items():
             with self.subTest(name), warnings.catch_warnings():
                 warnings.simplefilter("ignore", RuntimeWarning)  # that collisions are uncertain
@@ -256,7 +254,6 @@ class Functions(small.Case):
         for settings in ({"run.precision": "double-double"}, {"run.coordinates": "absolute"},
                          {"run.collapse": "merge", "run.merge_speed": 0.1}, {"initial.masses": [1, 20000]}):
             self.refused(2, "a function", cradle.Simulation, "fig2", small.SHOCK | settings, restitution=law)
-
 
     def test_a_restitution_of_elastic_particles_collapses_as_any(self):
         scene = {"law": {"type": "inelastic", "restitution": 1}, "run": {"until": 10, "stop_gap": "1e-20"},

@@ -6,6 +6,7 @@ import shutil
 import subprocess
 import tempfile
 import unittest
+from pathlib import Path
 
 import browser
 import small
@@ -51,13 +52,10 @@ class Site(unittest.TestCase):
     def setUpClass(cls):
         folder = tempfile.TemporaryDirectory()
         cls.addClassCleanup(folder.cleanup)
-        cls.folder = os.path.join(folder.name, "site")
+        cls.folder = Path(folder.name) / "site"
         cls.reason = built(cls.folder)
-        files = [os.path.relpath(os.path.join(top, name), cls.folder)
-                 for top, _, names in os.walk(cls.folder) for name in names]
-        cls.pages = {name: small.Page(small.read(os.path.join(cls.folder, name)))
-                     for name in files if name.endswith(".html") and name != "404.html"}
-        cls.sheets = [name for name in files if name.endswith(".css")]
+        cls.pages = {str(path.relative_to(cls.folder)): small.Page(small.read(path))
+                     for path in cls.folder.rglob("*.html") if path.name != "404.html"}
 
     def setUp(self):
         if self.reason:
@@ -74,7 +72,7 @@ class Site(unittest.TestCase):
                 path, _, part = link.partition("#")
                 there = os.path.normpath(os.path.join(os.path.dirname(name), path)) if path else name
                 with self.subTest(page=name, link=link):
-                    self.assertTrue(os.path.isfile(os.path.join(self.folder, there)))
+                    self.assertTrue((self.folder / there).is_file())
                     if part and there in self.pages:
                         self.assertIn(part, self.pages[there].ids)
 
@@ -82,16 +80,15 @@ class Site(unittest.TestCase):
         for name, page in self.pages.items():
             self.assertEqual([load for load in page.loads if OUTSIDE.match(load) and not load.startswith("data:")], [],
                              name)
-        for name in self.sheets:
-            sheet = small.read(os.path.join(self.folder, name))
-            self.assertNotRegex(sheet, r"url\(['\"]?(https?:)?//|@import", name)
+        for path in self.folder.rglob("*.css"):
+            self.assertNotRegex(small.read(path), r"url\(['\"]?(https?:)?//|@import", path)
 
     def test_the_package_is_documented(self):
         names = self.pages["python-functions.html"].ids
         for name in ("cradle.run", "cradle.open", "cradle.Simulation", "cradle.resume"):
             self.assertIn(name, names)
-        with open(os.path.join(self.folder, "python-functions.html"), encoding="utf-8") as file:
-            self.assertIn("<code>x</code>: positions in l, shape (n,)", file.read())
+        page = small.read(self.folder / "python-functions.html")
+        self.assertIn("<code>x</code>: positions in l, shape (n,)", page)
 
     @unittest.skipUnless(browser.find(), "no Chromium (Debian: chromium)")
     def test_reader_finds_words_from_a_disk(self):
@@ -101,7 +98,7 @@ class Site(unittest.TestCase):
                 reader.emulate(scheme)
                 for word, page in (("gap", "core/"), ("resume", "how-to-run"), ("collapse", "how-to-trust"),
                                    ("digits", "how-to-trust")):
-                    reader.load(os.path.join(self.folder, "index.html"))
+                    reader.load(self.folder / "index.html")
                     found = reader.until(SEARCH % word, 60)
                     self.assertTrue(any(page in link for link in found), f"{word}: {found}")
                     reader.shot(f"search-{word}-{width}-{scheme}", 900)
@@ -112,7 +109,7 @@ class Site(unittest.TestCase):
     def test_no_page_is_wider_than_the_window_or_a_telephone(self):
         with browser.Browser() as reader:
             for name in self.pages:
-                reader.load(os.path.join(self.folder, name))
+                reader.load(self.folder / name)
                 for width in (1200, 390):
                     reader.resize(width)
                     with self.subTest(page=name, width=width):

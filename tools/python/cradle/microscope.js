@@ -194,8 +194,7 @@ function cradleMicroscope(element, data) {
     changed();
   }
   function pan(dx, dy) {
-    const { view } = camera;
-    camera.pan(-dx / box.width * view.T, dy / box.height * view.X);
+    camera.pan(-dx / box.width * camera.view.T, dy / box.height * camera.view.X);
     changed();
   }
   // Moves to collision e. Keeps the spans if they still suit it, else takes the gap that closed in it.
@@ -253,9 +252,8 @@ function cradleMicroscope(element, data) {
     },
     // The height of a particle's world line at a pixel column.
     height: (particle, x) => {
-      const line = camera.chart.byParticle.get(particle - world.first), { view } = camera;
-      const [tau] = unbounded(x, 0);
-      return microscopeScales(view, box).y(microscopeAlong(camera.chart, line, tau), tau);
+      const { chart, view } = camera, line = chart.byParticle.get(particle - world.first), [tau] = unbounded(x, 0);
+      return microscopeScales(view, box).y(microscopeAlong(chart, line, tau), tau);
     },
     gap: (a, b, event) => microscopeRelative(world, a - world.first, b - world.first, event),
     readout: () => readout.textContent, zoom, pan, visit, draw, actions, state,

@@ -251,7 +251,7 @@ class Simulation:
         mpmath = imported("mpmath")
         texts = self.decimals(name)
         one = isinstance(texts, str)
-        with mpmath.workdps(digits or max((len(text) for text in ([texts] if one else texts)), default=17)):
+        with mpmath.workdps(digits or max(map(len, [texts] if one else texts), default=17)):
             return mpmath.mpf(texts) if one else [mpmath.mpf(text) for text in texts]
 
     # ---- files

@@ -114,9 +114,8 @@ class Column(np.lib.mixins.NDArrayOperatorsMixin):
         They are rounded here; mpmath rounds sums and products to mpmath.mp.dps, which is not changed.
         """
         mpmath = imported("mpmath")
-        if digits is None:
-            digits = max((len(text) for text in self.values.ravel().tolist()), default=17) if self.is_text else 17
-        with mpmath.workdps(digits):
+        lengths = map(len, self.values.ravel().tolist()) if self.is_text else ()
+        with mpmath.workdps(digits or max(lengths, default=17)):
             return [[mpmath.mpf(v) for v in row] if np.ndim(row) else mpmath.mpf(row) for row in self.values.tolist()]
 
     def __repr__(self) -> str:

@@ -57,13 +57,12 @@ def draw_particles(result, units, panels):
     elif series:
         time = series["time"] / units.t
         falling = "potential_energy" in series  # then energy changes between collisions too
-        axes[1].plot(time, series["energy"] / units.energy, color=BLUE,
+        axes[1].plot(time, series["energy"] / units.energy, color=BLUE, label="kinetic" if falling else None,
                      drawstyle="default" if falling else "steps-post")
         least = 0.0
         if falling:
             total = (series["energy"] + series["potential_energy"]) / units.energy
             axes[1].plot(time, total, color=ORANGE, label="with that of gravity")
-            axes[1].get_lines()[0].set_label("kinetic")
             least = min(total.min(), 0.0)
         axes[1].set(ylabel=units.energy_label(), xlabel=units.time_label(), ylim=(least, None))
         if "collisions" in series:

@@ -66,12 +66,10 @@ def enclosed(low: str, high: str) -> tuple[str, int]:
             return powers(str(middle.normalize())), len(middle.normalize().as_tuple().digits)
         right = max(0, middle.adjusted() - radius.adjusted() - 1) if middle != 0 else 0
         shown = f"{middle:.{max(0, min(right, MOST_DIGITS) - 1)}e}"
-    mantissa, _, exponent = shown.partition("e")
-    if -5 <= int(exponent) < min(right, MOST_DIGITS):
+    if -5 <= int(shown.partition("e")[2]) < min(right, MOST_DIGITS):
         shown = f"{Decimal(shown):f}"
-    ending = "…" if right > MOST_DIGITS else ""
-    mantissa, _, exponent = shown.partition("e")
-    shown = mantissa + ending + (f"e{exponent}" if exponent else "")
+    mantissa, e, exponent = shown.partition("e")
+    shown = mantissa + "…" * (right > MOST_DIGITS) + e + exponent
     return f"{powers(shown)} ± {powers(f'{radius:.1e}')}", right
 
 

@@ -31,8 +31,8 @@ def given(result: Result, table: str, key: str):
     return found.pop() if len(found) == 1 else None
 
 
-def some(value, noun: str = "particle") -> str:
-    return f"Several {noun}s" if value is None else count_of(value, noun)
+def some(value) -> str:
+    return "Several particles" if value is None else count_of(value, "particle")
 
 
 def moved(count, verb: str) -> str:

@@ -70,15 +70,13 @@ def of_program(words: list[str]) -> str:
 
 def lead(result: Result) -> str:
     """One line that describes the result."""
-    scene, about = result.scene, result.attributes
-    law, initial = scene.get("law", {}), scene.get("initial", {})
+    initial, about = result.scene.get("initial", {}), result.attributes
     parts = [result.kind if result.kind != "trust" else "comparison of precisions"]
     if initial.get("type") != "clusters":
         particles = initial.get("particles") or len(initial.get("x", ())) or sum(
             int(float(initial.get(side, {}).get("particles", 0))) for side in ("left", "right"))
-        parts.append(f"{law.get('type', '')} law")
-        coordinates = text(scene.get("run", {}).get("coordinates", ""))
-        parts.append(f"{count_of(float(particles), 'particle')} in {coordinates}")
+        coordinates = text(result.word("run", "coordinates"))
+        parts += [f"{result.law} law", f"{count_of(float(particles), 'particle')} in {coordinates}"]
     if about.get("replicas"):
         parts.append(count_of(about["replicas"], "replica"))
     parts += [text(about.get("precision", "")), f"<b>{text(result.outcome)}</b>"]
@@ -190,11 +188,10 @@ def again(result: Result) -> str:
 def cost(result: Result) -> Entries:
     """The work that was done, and the program's estimate; results do not store wall times."""
     collisions = last(result.series, "collisions")
-    if collisions is None and "collisions" in result.replicas:
-        collisions = int(result.replicas["collisions"].values.sum())
-    if collisions is None and result.points:
-        collisions = sum(int(point.replicas["collisions"].values.sum()) for point in result.points
-                       if "collisions" in point.replicas)
+    counts = [each.replicas["collisions"].values.sum() for each in (result, *result.points)
+              if "collisions" in each.replicas]
+    if collisions is None and counts:
+        collisions = int(sum(counts))
     if collisions is not None:
         yield "collisions", number(collisions), "of all replicas" if result.attributes.get("replicas") else ""
     if not result.in_progress:

@@ -25,7 +25,7 @@ def tables(result: Result) -> str:
 
 def cell(value) -> tuple[object, str]:
     value = value.item() if isinstance(value, np.generic) else value
-    return (value, number(value, 6)) if not isinstance(value, str) else (value, text(value))
+    return value, number(value, 6)
 
 
 def head(name: str, symbols: str) -> str:
@@ -78,8 +78,7 @@ def points(result: Result) -> str:
     names = [name for name in table.columns if not name.endswith(BESIDE)]
     labels = [point.label for point in result.points]
     texts = sorted({word.split("=", 1)[0] for label in labels for word in label.split()} - set(names))
-    heads = [text(name) for name in texts]
-    heads += [head(name, table[name].unit) for name in names]
+    heads = [*map(text, texts), *(head(name, table[name].unit) for name in names)]
     rows = []
     for row, label in enumerate(labels):
         said, point = dict(word.split("=", 1) for word in label.split() if "=" in word), result.points[row]
@@ -108,19 +107,17 @@ def precisions(result: Result) -> str:
     heads = ["precision", "coordinates", "outcome", "collisions right", "until t", "counts right until t",
              "6 digits until t", "proved until t", "digits of energy at the end", "digits of front at the end"]
     rows = []
-    for number_of, table in enumerate(result.trust):
-        about = table.attributes
+    for row, table in enumerate(result.trust):
+        about, reference = table.attributes, row == len(result.trust) - 1
         whole = "to the end" if about.get("right_to_end") else ""
         six, proved = (about.get(name, -1) for name in ("six_digits_until", "proved_until"))
         digits = [table[name][-1].item() if len(table[name]) else np.nan for name in ("energy_digits", "front_digits")]
-        reference = number_of == len(result.trust) - 1
-        rows.append([(number_of, text(about["precision"])), (about["coordinates"], text(about["coordinates"])),
-                     (about["outcome"], text(about["outcome"])), cell(about["collisions_right"]),
+        rows.append([(row, text(about["precision"])),
+                     *(cell(about[name]) for name in ("coordinates", "outcome", "collisions_right")),
                      (about["collisions_right_until"], whole or number(about["collisions_right_until"], 10)),
                      (about["counts_right_until"], number(about["counts_right_until"], 10)),
                      (six, number(six, 10) if six >= 0 else "–"),
                      (proved, "to the end" if about.get("proved_to_end") else
-                      (number(proved, 10) if proved >= 0 else "–"))]
-                    + [(value, "reference" if reference else number(value, 3))
-                       for value in digits])
+                      (number(proved, 10) if proved >= 0 else "–")),
+                     *((value, "reference" if reference else number(value, 3)) for value in digits)])
     return sortable("the same run at rising precision, each compared with the last", heads, rows)

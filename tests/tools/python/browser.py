@@ -21,7 +21,7 @@ def find():
 class Browser:
     """Use it in `with`."""
 
-    def __init__(self, width=1100, height=900):
+    def __init__(self):
         self.folder = tempfile.mkdtemp()
         ours_read, theirs_write = os.pipe()
         theirs_read, ours_write = os.pipe()
@@ -40,9 +40,9 @@ class Browser:
         self.session = self.call("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
         for domain in ("Page", "Runtime", "Network", "Log"):
             self.call(f"{domain}.enable")
-        self.resize(width, height)
+        self.resize()
 
-    def resize(self, width, height=900, ratio=1):
+    def resize(self, width=1100, height=900, ratio=1):
         """The size of the window in pixels, and those of the screen in each of them."""
         self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=ratio,
                   mobile=False)

@@ -20,8 +20,7 @@ SHOWN = """Array.from(document.querySelectorAll('figure > img'))
 class Reader(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.browser = browser.Browser().__enter__()
-        cls.addClassCleanup(cls.browser.__exit__)
+        cls.browser = cls.enterClassContext(browser.Browser())
 
     def load(self, make, scheme="light", media=""):
         small.page(make)
@@ -31,7 +30,7 @@ class Reader(unittest.TestCase):
         self.browser.load(f"{make.__name__}.html")
 
     def test_pages_load_without_a_word_and_without_a_request_and_fit_a_window_and_a_telephone(self):
-        self.addCleanup(self.browser.resize, 1100)
+        self.addCleanup(self.browser.resize)
         for scheme, width in (("light", 1200), ("dark", 390)):
             self.browser.resize(width)
             for make in small.ALL:

@@ -3,6 +3,7 @@ import os
 import shutil
 import subprocess
 import time
+from unittest import mock
 
 import h5py
 
@@ -108,10 +109,8 @@ class Arguments(small.Case):
         self.assertTrue(sim.over)
         self.refused("write:", sim.write, 5)
 
+    @mock.patch.multiple(simulation, MOST_EVENTS=100, PART=7)
     def test_events_that_fill_the_memory_are_warned_of(self):
-        for name, small_one in (("MOST_EVENTS", 100), ("PART", 7)):
-            self.addCleanup(setattr, simulation, name, getattr(simulation, name))
-            setattr(simulation, name, small_one)
         whole, parts = (cradle.Simulation("fig2", small.SHOCK | {"output.events": events}) for events in (False, True))
         whole.advance()
         with self.assertWarnsRegex(RuntimeWarning, "events so far take .* GB of memory: .*on_collision"):

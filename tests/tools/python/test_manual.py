@@ -57,12 +57,10 @@ def missing(expected, output):
 
 class Manual(unittest.TestCase):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.addCleanup(os.chdir, os.getcwd())
+        folder = self.enterContext(tempfile.TemporaryDirectory())
+        self.enterContext(contextlib.chdir(folder))
         self.addCleanup(plt.close, "all")
-        os.chdir(folder.name)
-        programs = os.path.join(folder.name, ".programs")
+        programs = os.path.join(folder, ".programs")
         os.mkdir(programs)
         os.symlink(sys.executable, os.path.join(programs, "python3"))
         os.symlink(os.environ["CRADLE_PROGRAM"], os.path.join(programs, "cradle"))

@@ -68,8 +68,7 @@ class Microscope(browser.Browser):
 
 
 def rational_collapse(count):
-    """Initial state and first collisions of collapse3, in fractions: (left, time, closing speed, positions, velocities
-    after)."""
+    """Initial state and first collisions of collapse3, as fractions: (left, time, closing speed, x, v after it)."""
     restitution = Fraction(1, 20)
     x, v, t = [Fraction(0), Fraction(1), Fraction(3)], [Fraction(1), Fraction(0), Fraction(-1)], Fraction(0)
     start, collisions = (list(x), list(v)), []
@@ -135,11 +134,8 @@ class Data(unittest.TestCase):
 class InBrowser(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        folder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(folder.cleanup)
-        cls.folder = pathlib.Path(folder.name)
-        cls.browser = Microscope(height=760)
-        cls.addClassCleanup(cls.browser.__exit__)
+        cls.folder = pathlib.Path(cls.enterClassContext(tempfile.TemporaryDirectory()))
+        cls.browser = cls.enterClassContext(Microscope())
         cls.page, result, _ = cls.made("collapse3", "collapse3", {})
         cls.start, cls.collisions = rational_collapse(len(result.events.left))
 

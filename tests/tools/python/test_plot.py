@@ -10,6 +10,7 @@ import numpy as np
 import cradle
 import small
 from cradle import program
+from cradle.drawing import correlations, finish, particles, style
 
 
 class Pictures(small.Case):
@@ -43,7 +44,7 @@ class Pictures(small.Case):
             self.assertEqual(list(inspect.signature(function).parameters), ["result", "axes", "theory"])
 
     def test_the_exact_displacement_is_that_of_jepsen(self):
-        from cradle.drawing.correlations import displacement, exact
+        displacement, exact = correlations.displacement, correlations.exact
         for time, square in ((1, 0.5297), (3, 2.170), (5, 3.787), (10, 7.788), (20, 15.77)):
             self.assertAlmostEqual(displacement(time) / square, 1, delta=2e-4)
         self.assertAlmostEqual(displacement(1e-4), 1e-8, delta=2e-12)
@@ -110,11 +111,10 @@ class Pictures(small.Case):
         self.refused(2, r"found 3\): give 2", cradle.plot.energy, small.shock(), axes=axes.ravel()[:3])
 
     def test_are_drawn_for_dark_pages_too(self):
-        from cradle.drawing.style import BLUE, DARK, LIGHT
-        for dark, colours in ((False, LIGHT), (True, DARK)):
+        for dark, colours in ((False, style.LIGHT), (True, style.DARK)):
             figure = cradle.plot.drawings(small.shock())["energy"](dark=dark)
             self.assertEqual(matplotlib.colors.to_hex(figure.get_facecolor()), colours["white"])
-        self.assertEqual(matplotlib.colors.to_hex(BLUE), LIGHT[BLUE])  # after it
+        self.assertEqual(matplotlib.colors.to_hex(style.BLUE), style.LIGHT[style.BLUE])  # after it
 
     def test_have_the_title_and_name_the_paper(self):
         figure = cradle.plot.shock(small.shock())
@@ -124,20 +124,18 @@ class Pictures(small.Case):
         self.assertTrue(any("Zaburdaev and Herminghaus" in text for text in texts))
 
     def test_no_axis_has_a_single_label(self):
-        from cradle.drawing.finish import label_ticks
         for low, high in ((2, 5), (0.9, 1.3), (3, 40), (1.01, 1.02), (1, 1e9)):
             figure, axes = plt.subplots()
             axes.set(yscale="log", ylim=(low, high))
-            label_ticks(axes.yaxis)
+            finish.label_ticks(axes.yaxis)
             figure.canvas.draw()
             labels = [label.get_text() for label, place in zip(axes.get_yticklabels(), axes.get_yticks())
                       if low <= place <= high and label.get_text()]
             self.assertGreater(len(labels), 1, (low, high))
 
     def test_a_collapse_is_shown_against_the_time_that_is_left(self):
-        from cradle.drawing.particles import time_to_collapse
         with cradle.open(small.collapse()) as result:
-            left = time_to_collapse(result)
+            left = particles.time_to_collapse(result)
             # t_c = 12/7; doubles resolve the first differences, and the last one is 5/11 of the last interval: each
             # time to the next collision is 5/16 of the one before.
             np.testing.assert_allclose(left[:8], result.collapse["time"] - result.events["time"][:8], rtol=1e-9)

@@ -70,13 +70,6 @@ class Reports(small.Case):
         # What a sweep varies is not said to have one value.
         self.assertIn("run into each other; two that collide part at a part of the speed", small.page(small.sweep))
 
-    def begin_of(self, name, scene):
-        """The first paragraph of the report of a run of this scene, and the whole page."""
-        scene = {"law": {"type": "inelastic", "restitution": 0.9}, "run": {"until": 1, "stop_gap": 1e-9}} | scene
-        with cradle.run(scene, output=name + ".h5") as result:
-            page = read(cradle.report(result))
-        return html.unescape(re.search("<p class=intro>(.*)</p>", page)[1]).replace("\xa0", " "), page
-
     def test_say_what_defines_the_system(self):
         list_of = {"type": "list", "x": [1, 2], "v": [0, -1]}
         for name, scene, said, fronts in (
@@ -99,8 +92,10 @@ class Reports(small.Case):
                   "rest between them, at the velocities 1 and -1 l/t;",), ["left", "right"]),
                 ("one", {"initial": {"type": "list", "x": [1], "v": [0]}}, ("1 particle starts from given positions",),
                  [])):
-            with self.subTest(name):
-                begin, page = self.begin_of(name, scene)
+            common = {"law": {"type": "inelastic", "restitution": 0.9}, "run": {"until": 1, "stop_gap": 1e-9}}
+            with self.subTest(name), cradle.run(common | scene, output=name + ".h5") as result:
+                page = read(cradle.report(result))
+                begin = html.unescape(re.search("<p class=intro>(.*)</p>", page)[1]).replace("\xa0", " ")
                 for words in said:
                     self.assertIn(words, begin)
                 self.assertEqual(re.findall("(left|right) front at the end", page), fronts)

@@ -16,10 +16,8 @@ import small
 
 class Run(small.Case):
     def setUp(self):
-        self.file = h5py.File(small.shock(), "r")  # with locks, which ours then has too
-        self.result = cradle.open(small.shock())
-        self.addCleanup(self.file.close)
-        self.addCleanup(self.result.close)
+        self.file = self.enterContext(h5py.File(small.shock(), "r"))  # with locks, which ours then has too
+        self.result = self.enterContext(cradle.open(small.shock()))
 
     def test_columns_are_those_of_the_file_with_unit_and_description(self):
         energy = self.result.series.energy

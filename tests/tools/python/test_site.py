@@ -50,9 +50,7 @@ def built(folder):
 class Site(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        folder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(folder.cleanup)
-        cls.folder = Path(folder.name) / "site"
+        cls.folder = Path(cls.enterClassContext(tempfile.TemporaryDirectory())) / "site"
         cls.reason = built(cls.folder)
         cls.pages = {str(path.relative_to(cls.folder)): small.Page(small.read(path))
                      for path in cls.folder.rglob("*.html") if path.name != "404.html"}

@@ -80,8 +80,7 @@ def certify(scene: Scene, set: Settings = None, *, digits: Sequence[int] = (), r
             **common) -> Result:
     """Runs a scene and proves its collisions; `result.certificate.verdict` is "proved" or "undecided" (status 5).
 
-    digits: of the proof, tried one after the other. replicas: how many to prove; writes their statistics. Other
-    arguments as in run().
+    digits: of the proof, tried in turn. replicas: how many to prove; writes their statistics. Others as in run().
     """
     options = option("--digits", ",".join(map(str, digits)) or None) + option("--replicas", replicas)
     return compute("certify", "-certified.h5", scene, set, options, **common)

@@ -28,8 +28,7 @@ def data(result):
         return None
     law = {"type": result.law} | {key: result.setting("law", key) for key in ("restitution", "loss")
                                   if key in scene["law"]}
-    # World lines between collisions follow from constant restitutions, but not with speed-dependent ones or walls, and
-    # are straight without gravity.
+    # World lines between collisions follow from constant restitutions, without walls, and are straight without gravity.
     follows = "cutoff_exponent" not in scene["law"] and not {"walls", "gravity"} & set(scene)
     found = collisions(result) if follows and len(result.events.get("kind", ())) else snapshots(result)
     return found and {"law": law} | found

@@ -131,8 +131,7 @@ class Result:
         `gap`, `closing_speed` of shape (particles - 1,).""")
     profiles: Tables = part(Tables, "profiles", """Averages over bins at times: `x`, `velocity`, `density`, ... of shape
         (bins,); of an ensemble tables.""")
-    mean_profiles: Tables = part(lambda *group: Tables(*group, Means), "profiles",
-                                 "The same; of an ensemble the means.")
+    mean_profiles: Tables = part(lambda *group: Tables(*group, Means), "profiles", "The same; of an ensemble means.")
     averages: Table = part(Table, "averages", """Averages over time in bins: `x`, `density`, `temperature`,
         `heat_current`, ... of shape (bins,), with `_sem`; of an ensemble tables.""")
     histograms: Table = part(Table, "histograms", """What a run counted, a table each: `result.histograms.free_flight`

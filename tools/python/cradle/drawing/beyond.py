@@ -70,8 +70,8 @@ def rate(result, name):
 
 
 def rates(result, since, units):
-    """Collisions per l/2u0, dissipative and elastic: mean and standard deviation, from SETTLED after a given time until
-    the rows end."""
+    """Dissipative and elastic collisions per l/2u0: mean and standard deviation, from SETTLED after `since` until the
+    rows end."""
     time, every = rate(result, "collisions")
     elastic = rate(result, "collisions_below_cutoff")[1]
     used_up = result.setting("initial", "particles", np.nan) * units.t  # the sticky gas has the last of equal rows
@@ -161,19 +161,15 @@ def draw_distributions(snapshots, scale, units, panels):
 
 
 def draw_spacetime(snapshots, units, panels):
-    """Paths of particles evenly spread over the core at the end, relative to the one in its middle: all keep their
-    order."""
+    """Paths of particles evenly spread over the core at the end, relative to the middle one. All keep their order."""
     core, _ = core_of(snapshots[-1])
     particles = snapshots[-1]["index"][core][::max(1, len(core) // PATHS)]
     ax = panels(figsize=(5.8, 4.6))
     time = np.array([s["time"] for s in snapshots]) / units.t
     middle = int(snapshots[-1]["index"][core[len(core) // 2]])
-    places = []
-    for s in snapshots:
-        at = dict(zip(s["index"].tolist(), s["x"] / units.x))
-        places.append({particle: x - at.get(middle, np.nan) for particle, x in at.items()})
+    places = [dict(zip(s["index"].tolist(), s["x"] / units.x)) for s in snapshots]
     for particle, colour in shaded(particles.tolist()):
-        ax.plot(time, [at.get(particle, np.nan) for at in places], color=colour, lw=0.6)
+        ax.plot(time, [at.get(particle, np.nan) - at.get(middle, np.nan) for at in places], color=colour, lw=0.6)
     reach = max(np.ptp(s["x"][core_of(s)[0]]) for s in snapshots) / units.x
     ax.set(xlabel=units.time_label(), xlim=(time[0], time[-1]), ylim=(-0.7 * reach, 0.7 * reach),
            ylabel=units.label(rf"$x-x_{{{middle}}}$", rf"$(x-x_{{{middle}}})\,/\,l$"))

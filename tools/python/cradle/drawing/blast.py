@@ -13,12 +13,6 @@ def pictures(result, _theory, _units):
         yield "blast", draw, result
 
 
-def gas(result):
-    """E and rho, mass per length."""
-    masses = [float(mass) for mass in result.scene["initial"].get("masses", [1])]
-    return result.setting("initial", "energy"), np.mean(masses) / result.setting("initial", "spacing", 1.0)
-
-
 def solution(size=400):
     """xi, density, velocity relative to the front's, and temperature relative to its square, for V from 1/3 to 1/2."""
     v = 1 / 3 + np.linspace(1e-3, 1, size) ** 3 / 6
@@ -28,7 +22,8 @@ def solution(size=400):
 
 
 def draw(result, panels):
-    energy, rho = gas(result)
+    masses = [float(mass) for mass in result.scene["initial"].get("masses", [1])]
+    energy, rho = result.setting("initial", "energy"), np.mean(masses) / result.setting("initial", "spacing", 1.0)
     axes = panels(2, 2, figsize=(7.2, 5.6))
     draw_front(axes[0, 0], result, energy, rho)
     others, (xi, *solutions) = axes.flat[1:], solution()

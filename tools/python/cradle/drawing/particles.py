@@ -52,8 +52,10 @@ def draw_particles(result, units, panels):
     axes[0].set(xlabel=units.time_label(), ylabel=units.position_label())
     if paths and len(paths) <= 8:
         axes[0].legend(ncol=2)
-    if left is not None:
-        draw_before_collapse(axes[1], left, units)
+    if left is not None:  # the number of collisions is a straight line in the logarithm of the time that is left
+        axes[1].plot(left / units.t, np.arange(1, len(left) + 1), ".", ms=3, color=BLUE)
+        axes[1].set_ylabel("collisions")
+        towards_collapse(axes[1], units)
     elif series:
         time = series["time"] / units.t
         falling = "potential_energy" in series  # then energy changes between collisions too
@@ -103,10 +105,3 @@ def towards_collapse(ax, units):
     ax.set_xscale("log")
     ax.invert_xaxis()
     ax.set_xlabel(units.label("time to the collapse $t_c-t$ ($t$)", r"time to the collapse $(t_c-t)\,/\,(l/2u_0)$"))
-
-
-def draw_before_collapse(ax, left, units):
-    """The number of collisions: a straight line in the logarithm of the time that is left."""
-    ax.plot(left / units.t, np.arange(1, len(left) + 1), ".", ms=3, color=BLUE)
-    ax.set_ylabel("collisions")
-    towards_collapse(ax, units)

@@ -68,6 +68,9 @@ PICTURES = {  # what each one shows, and what to see in it, for a reader who has
                  "factor.",
     "onset": "Part of the replicas of rings that collapse, against the number of particles. The part that collapses "
              "rises from none to all within a narrow range of particle numbers.",
+    "bouncing": "A ball on a shaken floor: its height once a period against the strength of the shaking. A branch that "
+                "splits is a period that doubles; the dashed line is where the first one does.",
+    "column": "A column of beads on a shaken floor: its height against X = N (1 - r). Dashed: nearly elastic beads.",
     "blast": "A blast in a cold gas: its front, and profiles beside the exact solution of Euler's equations. Points on "
              "the lines agree with the exact solution for a continuous gas.",
     "domino": "Dominoes of two masses: when each heavy particle is first hit, against the closed form. Points on the "

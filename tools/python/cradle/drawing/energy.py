@@ -12,7 +12,6 @@ def pictures(result, theory, units):
 
 
 def draw_energy(result, theory, units, panels):
-    """Energy, with equation (7) dotted and the sticky gas dashed; below, the number of collisions."""
     series = result.means
     time = series["time"] / units.t
     top, below = panels(2, sharex=True, figsize=(5.6, 5.4), height_ratios=(3, 2), letters=True)

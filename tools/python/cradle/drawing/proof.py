@@ -16,7 +16,6 @@ def certificates(result, units):
 
 
 def draw_trust(result, panels):
-    """Digits of energy and front, and the time until which the sequence of collisions is right."""
     shown = [name for name in ("energy", "front")  # there is no front on a ring
              if any(np.isfinite(run[f"{name}_digits"]).any() for run in result.trust)]
     axes = np.atleast_1d(panels(len(shown), 1, sharex=True, figsize=(6.4, 1.2 + 2.6 * len(shown))))

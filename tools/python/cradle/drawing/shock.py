@@ -51,7 +51,6 @@ def merged(profile):
 
 
 def draw_shock(result, theory, units, panels):
-    """Velocities of single particles, averaged velocities, density."""
     snapshots = thinned(result.snapshots, MOST)
     profiles = profiles_of(result) or [averaged(s) for s in snapshots if len(s["x"]) > 2 and np.ptp(s["x"]) > 0]
     common = [p for p in profiles if p["time"] in {s["time"] for s in snapshots}]

@@ -88,7 +88,6 @@ def draw_sticky(result, units, panels):
 
 
 def draw_mass(ax, result, units, formula, core, growth):
-    """The merged mass, and the line of the weak solution."""
     time, cloud = result.means["time"], result.means["cloud_mass"]
     collided = cloud > 0
     ax.plot(time / units.t, core + growth * time, color=GREY, lw=5, alpha=0.5,

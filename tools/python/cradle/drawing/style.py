@@ -20,8 +20,7 @@ DARK = {BLUE: "#58b1ee", ORANGE: "#f2b33d", GREEN: "#45cfa2", RED: "#f58a52", PU
 
 SETTINGS = {
     "font.family": "DejaVu Sans", "font.size": 9, "axes.labelsize": 9, "legend.fontsize": 7.5,
-    "axes.linewidth": 0.7,
-    "xtick.direction": "in", "ytick.direction": "in", "xtick.top": True, "ytick.right": True,
+    "axes.linewidth": 0.7, "xtick.direction": "in", "ytick.direction": "in", "xtick.top": True, "ytick.right": True,
     "legend.frameon": True, "legend.framealpha": 0.85, "legend.edgecolor": "none", "lines.linewidth": 1.2,
     "axes.prop_cycle": plt.cycler(color=[BLUE, ORANGE, GREEN, RED, PURPLE, SKY, "k"]), "figure.dpi": 100,
     "savefig.dpi": 200, "svg.hashsalt": "cradle", "pdf.fonttype": 42, "axes.formatter.limits": (-4, 7),

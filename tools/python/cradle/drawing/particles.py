@@ -72,8 +72,7 @@ def draw_particles(result, units, panels):
             other.plot(time, series["collisions"], color=RED, ls="--", drawstyle="steps-post")
             other.set_ylabel("collisions (dashed)", color=RED)
     if shrinking:
-        number = np.arange(1, len(result.events["interval"]) + 1)
-        count = number if left is None else left / units.t
+        count = np.arange(1, len(result.events["interval"]) + 1) if left is None else left / units.t
         for name, mark, colour in (("interval", "o", BLUE), ("closing_speed", "^", ORANGE)):
             value = result.events[name]
             axes[2].semilogy(count, np.where(value > 0, value, np.nan), mark, ms=3, color=colour,

@@ -4,9 +4,9 @@ import numpy as np
 
 from .style import BLUE, GREY, RED, SKY, shaded, shades
 
-REGIMES = {1: "apart", 2: "through each other", 3: "stuck last", 0: "one cluster only"}  # core/observe/scenario.hpp
+# Of core/observe/scenario.hpp.
+REGIMES = {1: ("apart", SKY), 2: ("through each other", BLUE), 3: ("stuck last", RED), 0: ("one cluster only", "0.8")}
 ENOUGH = 10  # replicas of a point of which shares are drawn
-COLOURS = {1: SKY, 2: BLUE, 3: RED, 0: "0.8"}
 
 
 def pictures(result, _theory, _units):
@@ -80,9 +80,9 @@ def draw_regimes(result, panels):
     for ax, (size, points) in zip(axes, groups.items()):
         below = np.zeros(len(points))
         places = np.arange(len(points))
-        for regime, name in REGIMES.items():
+        for regime, (name, colour) in REGIMES.items():
             share = np.array([np.mean(point.replicas["regime"] == regime) for point in points])
-            ax.bar(places, share, bottom=below, width=0.85, color=COLOURS[regime], label=name)
+            ax.bar(places, share, bottom=below, width=0.85, color=colour, label=name)
             below += share
         ax.set(ylim=(0, 1), ylabel=f"perturbation {size:g} $l$")
         losses = [f"{point.setting('law', 'loss'):.2g}" for point in points]

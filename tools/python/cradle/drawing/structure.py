@@ -68,8 +68,7 @@ def draw_structure(snapshot, units, panels):
     reference = rf"x_{{{int(snapshot['index'][particle])}}}"
     axes = panels(2, 2, figsize=(7.2, 5.6))
     dotted = False
-    for k, ax in enumerate(axes.flat):
-        half, low, high, inside = boxes[k]
+    for k, (ax, (half, low, high, inside)) in enumerate(zip(axes.flat, boxes)):
         size = np.clip(1.6 * (3000 / inside.sum()) ** 0.25, 1.6, 4)
         ax.plot(x[inside] / units.x, v[inside] / units.v, ".", color=BLUE, ms=size, mew=0, rasterized=True)
         ax.set(xlim=(-half / units.x, half / units.x), ylim=(low / units.v, high / units.v))

@@ -24,8 +24,7 @@ def draw(words, panels):
         if np.isfinite(words["stable_from"][k]):
             ax.plot([words["stable_from"][k], words["stable_to"][k]], [row, row], color=ORANGE, lw=6,
                     solid_capstyle="butt", zorder=3)
-        ended = words["high_proved"][k] == 1
-        ax.plot(high[k], row, "o", ms=4, color=BLUE, mfc=BLUE if ended else "white", zorder=4)
+        ax.plot(high[k], row, "o", ms=4, color=BLUE, mfc=BLUE if words["high_proved"][k] == 1 else "white", zorder=4)
     ax.set_yticks(range(len(order)), [words["word"][k] for k in order], family="monospace", fontsize=7)
     ax.set(xlabel="restitution $r$", xlim=(0, None), ylim=(-0.8, len(order) - 0.2))
     for colour, width, label in ((BLUE, 3, "exists (proved)"), (GREY, 1.5, "exists (seen)"),

@@ -28,8 +28,7 @@ def draw_zone(result, units, panels):
     velocity, density, mass = panels.stacked(3, height=2.1, sharex=True)
     slow = 2 * np.sqrt(loss)
     formed = bool(np.isfinite(measured))  # u+ has fallen to u_crit within the bins; before there is nothing to model
-    for sign, name, colour, line in ((1, "right", BLUE, "-"), (-1, "left", ORANGE, "--")):
-        index = "+" if sign > 0 else "-"
+    for sign, index, name, colour, line in ((1, "+", "right", BLUE, "-"), (-1, "-", "left", ORANGE, "--")):
         inside = np.array([-half, half])
         u = (-(speed - slow) * inside / (2 * half) + sign * (speed + slow) / 2) / units.v
         n = 1 + EXCESS / 2 + sign * EXCESS * inside / (2 * half)

@@ -131,7 +131,7 @@ function cradleMicroscope(element, data) {
     if (strip) microscopeStrip(pen, world, view, strip, colours, stores.strip);
     state.drawn = performance.now() - begun;
     const coarser = state.drawn > 14 ? 1.1 : state.drawn < 7 ? 0.95 : 1;
-    if (state.moving && !chart) quality = Math.min(4, Math.max(1, quality * coarser));
+    if (state.moving && !chart) quality = microscopeClamp(quality * coarser, 1, 4);
     describe();
   }
 

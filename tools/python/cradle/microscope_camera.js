@@ -4,7 +4,6 @@
 
 function microscopeCamera(world) {
   const camera = { world, chart: null, built: null };
-  const clamp = (x, low, high) => Math.min(high, Math.max(low, x));
   const limits = { T: 0, X: 0 };
 
   camera.home = () => {
@@ -75,8 +74,8 @@ function microscopeCamera(world) {
     const view = camera.view, [tau, xi] = pivot;
     let T = view.T / byTime, X = view.X / bySpace;
     if (follow) X = follow(T, view.X);
-    T = clamp(T, 1e-303, 4 * limits.T);
-    X = clamp(X, 1e-303, 4 * limits.X);
+    T = microscopeClamp(T, 1e-303, 4 * limits.T);
+    X = microscopeClamp(X, 1e-303, 4 * limits.X);
     // At a closer zoom there are only straight lines, and the offset from the anchor would lose its digits.
     if (T < 1e-9 * Math.abs(view.tau) || X < 1e-9 * Math.abs(view.xi)) return;
     view.tau = tau + (view.tau - tau) * (T / view.T);
@@ -99,7 +98,7 @@ function microscopeCamera(world) {
       return X * Math.exp(far > change && out > 0 ? change * out / far : change);
     }
     const wanted = Math.log(camera.natural(e, T) / X) - change;
-    return X * Math.exp(change + clamp(0.3 * wanted, 0.9 * change, -0.9 * change));
+    return X * Math.exp(change + microscopeClamp(0.3 * wanted, 0.9 * change, -0.9 * change));
   };
 
   // The collision that sets the span of space for the visible span of time: near a point, but not so near that it

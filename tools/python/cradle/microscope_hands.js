@@ -4,7 +4,6 @@ const MICROSCOPE_KEYS = { ArrowLeft: [1, 0], ArrowRight: [-1, 0], ArrowUp: [0, 1
 
 function microscopeHands(canvas, scope) {
   const { zoom, pan, visit, actions, state } = scope, fingers = new Map();
-  const clamp = (x, low, high) => Math.min(high, Math.max(low, x));
   const at = event => {
     const corner = canvas.getBoundingClientRect();
     return { x: event.clientX - corner.left, y: event.clientY - corner.top };
@@ -16,8 +15,8 @@ function microscopeHands(canvas, scope) {
     return event.altKey || x < box.left ? "space" : undefined;
   };
   const inside = ({ x, y }) => {
-    const box = scope.box();
-    return { x: clamp(x, box.left, box.left + box.width), y: clamp(y, box.top, box.top + box.height) };
+    const { left, top, width, height } = scope.box();
+    return { x: microscopeClamp(x, left, left + width), y: microscopeClamp(y, top, top + height) };
   };
 
   canvas.addEventListener("wheel", event => {
@@ -25,7 +24,7 @@ function microscopeHands(canvas, scope) {
     if (document.activeElement !== canvas && !event.ctrlKey) return;
     event.preventDefault();
     const turned = (event.deltaY || event.deltaX) * (event.deltaMode === 1 ? 30 : event.deltaMode === 2 ? 300 : 1);
-    zoom(Math.exp(-clamp(turned, -300, 300) / 350), inside(at(event)), only(event, at(event)));
+    zoom(Math.exp(-microscopeClamp(turned, -300, 300) / 350), inside(at(event)), only(event, at(event)));
   }, { passive: false });
 
   canvas.addEventListener("pointerdown", event => {
@@ -50,7 +49,7 @@ function microscopeHands(canvas, scope) {
     // Two fingers: the point between them follows them, and each axis is zoomed as they part along it.
     const other = [...fingers].find(([id]) => id !== event.pointerId)[1];
     pan((place.x - before.x) / 2, (place.y - before.y) / 2);
-    const part = (a, b, c) => Math.abs(b - c) < 40 ? 1 : clamp(Math.abs(a - c) / Math.abs(b - c), 0.25, 4);
+    const part = (a, b, c) => Math.abs(b - c) < 40 ? 1 : microscopeClamp(Math.abs(a - c) / Math.abs(b - c), 0.25, 4);
     scope.camera().zoom(part(place.x, before.x, other.x) || 1, part(place.y, before.y, other.y) || 1,
                         scope.unbounded((place.x + other.x) / 2, (place.y + other.y) / 2));
     pan(0, 0);

@@ -121,7 +121,7 @@ function microscopeVisible(world, view, row, height) {
   let lowest = world.particles - 1, highest = 0;
   const t0 = microscopeOrigin(world, view.anchor).t;
   for (let k = 0; k <= 24; ++k) {
-    const t = Math.min(world.end, Math.max(world.start, t0 + view.tau + view.T * (k / 24 - 0.5)));
+    const t = microscopeClamp(t0 + view.tau + view.T * (k / 24 - 0.5), world.start, world.end);
     const collision = microscopeFirstAfter(world.time, t) - 1;
     const since = t - (collision < 0 ? world.start : world.time[collision]);
     // The number of particles left of the part shown at this row.
@@ -163,7 +163,7 @@ function microscopeStrip(pen, world, view, box, colours, store) {
                    Math.max(1.5, y(depth[store.deepest[column]]) - y(store.high[column])));
   // The position of the view: its collision and its span of space.
   const at = box.left + box.width * Math.max(0, view.anchor.e + 0.5) / n;
-  const level = Math.min(box.top + box.height, Math.max(box.top, y(Math.log10(view.X))));
+  const level = microscopeClamp(y(Math.log10(view.X)), box.top, box.top + box.height);
   microscopeStroke(pen, colours.accent, 1, [[[box.left, level], [box.left + box.width, level]],
                                             [[at, box.top], [at, box.top + box.height]]]);
   pen.fillStyle = colours.accent;

@@ -8,7 +8,7 @@ const MICROSCOPE_PALETTE = [[58, 82, 164], [41, 138, 171], [86, 175, 128], [226,
 
 // Colour from the palette at 0 .. 1: [red, green, blue].
 function microscopeColour(part) {
-  const at = Math.min(0.9999, Math.max(0, part)) * (MICROSCOPE_PALETTE.length - 1), k = Math.floor(at);
+  const at = microscopeClamp(part, 0, 0.9999) * (MICROSCOPE_PALETTE.length - 1), k = Math.floor(at);
   return MICROSCOPE_PALETTE[k].map((c, i) => Math.round(c + (at - k) * (MICROSCOPE_PALETTE[k + 1][i] - c)));
 }
 
@@ -128,7 +128,7 @@ function microscopeDots(pen, chart, view, box, value, range) {
     lastY = py;
     ++seen;
     const part = (value[chart.collisions[i]] - range[0]) / (range[1] - range[0]);
-    const bin = Math.round(15 * Math.min(1, Math.max(0, part)));
+    const bin = Math.round(15 * microscopeClamp(part, 0, 1));
     if (!bins.has(bin)) bins.set(bin, []);
     bins.get(bin).push(px, py);
   }

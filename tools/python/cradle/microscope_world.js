@@ -139,6 +139,7 @@ function microscopeReplay(world) {
 }
 
 function microscopeLog(x) { return x > 0 ? Math.log10(x) : -400; }
+function microscopeClamp(x, low, high) { return Math.min(high, Math.max(low, x)); }
 
 // The time from right after collision i (-1: the start) to collision j >= i.
 function microscopeFlight(world, i, j) {

@@ -71,7 +71,7 @@ def rational_collapse(count):
     """Initial state and first collisions of collapse3, as fractions: (left, time, closing speed, x, v after it)."""
     restitution = Fraction(1, 20)
     x, v, t = [Fraction(0), Fraction(1), Fraction(3)], [Fraction(1), Fraction(0), Fraction(-1)], Fraction(0)
-    start, collisions = (list(x), list(v)), []
+    start, collisions = (None, t, None, x, list(v)), []
     while len(collisions) < count:
         due = [((x[i + 1] - x[i]) / (v[i] - v[i + 1]), i) for i in (0, 1)
                if v[i] > v[i + 1] and not (collisions and collisions[-1][0] == i)]
@@ -191,10 +191,8 @@ class InBrowser(unittest.TestCase):
         event = view["anchor"]["e"]
         left, origin, _, places, after = self.collisions[event]
         frame = (after[left] + after[left + 1]) / 2  # of the pair at the anchor
-        earlier = [collision for collision in self.collisions if collision[1] <= time]
-        since, at, speed = (earlier[-1][1], earlier[-1][3][particle], earlier[-1][4][particle]) if earlier else \
-            (Fraction(0), self.start[0][particle], self.start[1][particle])
-        x = at + speed * (time - since) - places[left] - frame * (time - origin)
+        *_, (_, since, _, at, speed) = (state for state in (self.start, *self.collisions) if state[1] <= time)
+        x = at[particle] + speed[particle] * (time - since) - places[left] - frame * (time - origin)
         return self.pixels_of(view, time - origin, x)
 
     def pixels_of(self, view, tau, x):

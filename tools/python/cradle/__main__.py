@@ -28,16 +28,15 @@ def main(words: list[str]) -> int:
         print(*made, sep="\n", flush=True)  # at the end: all are made before anybody can stop reading
     except BrokenPipeError:  # nobody reads the names of what was made: `cradle plot FILE | head -1`
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-    except (Error, ImportError) as error:
-        print(f"cradle: {error if isinstance(error, Error) else missing(error)}", file=sys.stderr)
-        return error.status if isinstance(error, Error) else BAD_FILE
+    except Error as error:
+        print(f"cradle: {error}", file=sys.stderr)
+        return error.status
+    except ImportError as error:
+        name = (error.name or "matplotlib").split(".")[0]
+        print(f"cradle: Python module {name} is missing ({sys.executable}: {error}): install the Debian package "
+              f"python3-{name}", file=sys.stderr)
+        return BAD_FILE
     return 0
-
-
-def missing(error: ImportError) -> str:
-    """Raises Error for a missing module, with the name of its Debian package."""
-    name = (error.name or "matplotlib").split(".")[0]
-    return f"Python module {name} is missing ({sys.executable}: {error}): install the Debian package python3-{name}"
 
 
 if __name__ == "__main__":

@@ -27,6 +27,19 @@ std::string summary(const RunOutcome& run, std::uint64_t collisions_before) {
                                       : fmt::format("{:.1f} million collisions/s", per_second * 1e-6));
 }
 
+Exit run(const RunArguments& options) {
+  const Scene scene = options.read();
+  const std::string output = options.output_or(scene.name + ".h5");
+  check_built(scene);
+  Interrupt interrupt;
+  note_signals(interrupt);
+  const FileClaim claim(output);
+  check_overwrite(output, "run", &scene, options.force());
+  RunFiles files(output, scene, options.force());
+  if (!options.quiet) notify(expected_warning(scene));
+  return run_command(files, output, options, interrupt);
+}
+
 }  // namespace
 
 Exit run_command(RunFiles& files, const std::string& output, const RunningOptions& options, Interrupt& interrupt) {
@@ -49,23 +62,6 @@ Exit run_command(RunFiles& files, const std::string& output, const RunningOption
   if (!options.quiet) fmt::print("{}wrote {}\n", text, output);
   return end_row(end.end).status;
 }
-
-namespace {
-
-Exit run(const RunArguments& options) {
-  const Scene scene = options.read();
-  const std::string output = options.output_or(scene.name + ".h5");
-  check_built(scene);
-  Interrupt interrupt;
-  note_signals(interrupt);
-  const FileClaim claim(output);
-  check_overwrite(output, "run", &scene, options.force());
-  RunFiles files(output, scene, options.force());
-  if (!options.quiet) notify(expected_warning(scene));
-  return run_command(files, output, options, interrupt);
-}
-
-}  // namespace
 
 void add_run(CommandLine& program) {
   Command command = program.add("run", "run a scene", "cradle run fig2 --set run.until=2000 -o fig2.h5");

@@ -12,12 +12,8 @@
 
 namespace cradle::tools {
 
-namespace {
-
 // The kind of these checkpoints (JournalHeader::kind).
 constexpr const char* live_kind = "simulation";
-
-}  // namespace
 
 void LiveRun::PolledMemory::check_clock() {
   const auto now = std::chrono::steady_clock::now();

@@ -21,6 +21,11 @@ std::size_t count_digits(std::string_view text) {
   return static_cast<std::size_t>(end - text.begin());
 }
 
+std::strong_ordering compare_magnitudes(const DecimalParts& a, const DecimalParts& b) {
+  if (a.exponent != b.exponent) return a.exponent <=> b.exponent;
+  return a.digits <=> b.digits;  // both begin with the same power of ten and have no zeros at the end
+}
+
 }  // namespace
 
 DecimalLiteral literal_of(std::string_view text) {
@@ -45,15 +50,6 @@ DecimalParts parts_of(std::string_view text) {
   return {negative, digits.substr(first, digits.find_last_not_of('0') + 1 - first),
           power + static_cast<std::int64_t>(digits.size() - first)};
 }
-
-namespace {
-
-std::strong_ordering compare_magnitudes(const DecimalParts& a, const DecimalParts& b) {
-  if (a.exponent != b.exponent) return a.exponent <=> b.exponent;
-  return a.digits <=> b.digits;  // both begin with the same power of ten and have no zeros at the end
-}
-
-}  // namespace
 
 std::optional<std::string> canonical_decimal(std::string_view written) {
   // An underscore must be between two digits, as in TOML.

@@ -3,15 +3,11 @@
 #include <cstdlib>
 
 namespace cradle::tools {
-namespace {
-
-constexpr long most_exponent = 5000;
-
-}  // namespace
 
 Whole power_of_ten(long exponent) { return pow(Whole(10), static_cast<unsigned>(exponent)); }
 
 std::optional<Rational> rational(std::string_view decimal) {
+  constexpr long most_exponent = 5000;
   const auto [digits, power] = scaled(decimal);
   if (std::abs(power) > most_exponent) return {};
   const Whole scale = power_of_ten(std::abs(power));

@@ -145,6 +145,36 @@ void gas(const Scene& scene, Cost& cost) {
         flights * time * std::numbers::sqrt2 * std::numbers::inv_sqrtpi * uniform(std::sqrt(3 * std::numbers::pi / 8));
 }
 
+// How a run ends at a collapse, and what takes it past.
+std::string end_line(const Scene& scene) {
+  if (particles_merge(scene)) return "";
+  if (!stops_at_collapse(scene))
+    return "to end sooner: run.collapse = \"stop\" without law.cutoff ends the run at the collapse; run.collapse = "
+           "\"merge\" with a run.merge_speed and without law.cutoff, or a larger law.cutoff, takes fewer collisions "
+           "past it\n";
+  const std::string unproved =
+      scene.run.stop_gap     ? fmt::format("a gap is below run.stop_gap = {}", scene.run.stop_gap->text)
+      : ends_unproved(scene) ? "a gap is below 2^-100 of one beside it at the start"
+                             : "numbers leave the range of the type (status 5), which may take long: run.stop_gap "
+                               "ends it sooner";
+  return fmt::format("the run ends (status 3) where a collapse is proved or, without proof, {}; to go past it: "
+                     "law.cutoff, or run.collapse = \"merge\" with a run.merge_speed\nin the collapse more collisions "
+                     "follow, how many is not known beforehand (of 200 particles some 1e7 at restitution 0.9, unless "
+                     "run.stop_gap ends it sooner)\n",
+                     unproved);
+}
+
+// As to_be_watched (core/chains/masses.hpp) says of so many particles that two threads could share them.
+bool watched_for_rounding(const Scene& scene, double particles) {
+  std::vector<double> masses;
+  for (const auto* some : {&scene.initial.masses, &scene.initial.random_masses})
+    for (const Decimal& mass : *some) masses.push_back(mass.value);
+  for (std::size_t i = 0; i < scene.initial.m.size(); ++i) masses.push_back(Decimal(scene.initial.m[i]).value);
+  if (masses.empty()) return false;
+  const auto [least, greatest] = std::ranges::minmax(masses);
+  return least < greatest && (particles <= 1000 || 10000 * least < greatest);
+}
+
 }  // namespace
 
 void bouncing_rows(const Scene& scene, Cost& cost) {
@@ -202,40 +232,6 @@ Cost expected_cost(const Scene& scene) {
     cost.memory += Correlator::bytes(cost.particles / static_cast<double>(wanted.tag_every), longest_lag(scene));
   return cost;
 }
-
-namespace {
-
-// How a run ends at a collapse, and what takes it past.
-std::string end_line(const Scene& scene) {
-  if (particles_merge(scene)) return "";
-  if (!stops_at_collapse(scene))
-    return "to end sooner: run.collapse = \"stop\" without law.cutoff ends the run at the collapse; run.collapse = "
-           "\"merge\" with a run.merge_speed and without law.cutoff, or a larger law.cutoff, takes fewer collisions "
-           "past it\n";
-  const std::string unproved =
-      scene.run.stop_gap     ? fmt::format("a gap is below run.stop_gap = {}", scene.run.stop_gap->text)
-      : ends_unproved(scene) ? "a gap is below 2^-100 of one beside it at the start"
-                             : "numbers leave the range of the type (status 5), which may take long: run.stop_gap "
-                               "ends it sooner";
-  return fmt::format("the run ends (status 3) where a collapse is proved or, without proof, {}; to go past it: "
-                     "law.cutoff, or run.collapse = \"merge\" with a run.merge_speed\nin the collapse more collisions "
-                     "follow, how many is not known beforehand (of 200 particles some 1e7 at restitution 0.9, unless "
-                     "run.stop_gap ends it sooner)\n",
-                     unproved);
-}
-
-// As to_be_watched (core/chains/masses.hpp) says of so many particles that two threads could share them.
-bool watched_for_rounding(const Scene& scene, double particles) {
-  std::vector<double> masses;
-  for (const auto* some : {&scene.initial.masses, &scene.initial.random_masses})
-    for (const Decimal& mass : *some) masses.push_back(mass.value);
-  for (std::size_t i = 0; i < scene.initial.m.size(); ++i) masses.push_back(Decimal(scene.initial.m[i]).value);
-  if (masses.empty()) return false;
-  const auto [least, greatest] = std::ranges::minmax(masses);
-  return least < greatest && (particles <= 1000 || 10000 * least < greatest);
-}
-
-}  // namespace
 
 std::string about(double x, int digits) {
   return fmt::format("{:g}", std::strtod(fmt::format("{:.{}g}", x, digits).c_str(), nullptr));

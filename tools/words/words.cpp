@@ -57,41 +57,6 @@ std::string proof_text(const WordRange& range) {
 const char* const two_walls =
     "nowhere: the distance between two walls at rest is the sum of all gaps, which therefore cannot all shrink\n";
 
-}  // namespace
-
-std::string word_text(const WordParticles& particles, const WordReport& report) {
-  std::string text = fmt::format("{}: {}\n", report.word, particles.text());
-  if (particles.left_wall && particles.right_wall) return text + two_walls;
-  if (report.in_order != report.word) text += fmt::format("  in order of time  {}\n", report.in_order);
-  if (report.mirrored) text += "  symmetry          the second half is the mirror image of the first\n";
-  if (!report.degenerate.empty()) text += fmt::format("  degenerate        {}\n", report.degenerate);
-  if (report.ranges.empty())
-    return text + fmt::format("  exists            at none of {} restitutions between 0 and 1 (seen, not proved)\n",
-                              word_points);
-  for (const WordRange& range : report.ranges) {
-    text += fmt::format("  exists            for r from {} to {}\n", range.low.at, range.high.at);
-    text += fmt::format("  existence         {}\n", proof_text(range));
-    for (const auto& [name, end] : {std::pair("lower", &range.low), std::pair("upper", &range.high)})
-      text += fmt::format("  {} end         {} ({})\n", name, end->reason, end->proved ? "proved" : "not proved");
-    text += fmt::format("  at r = {}\n", range.at);
-    text += fmt::format("    a period        multiplies speeds by {:.10g}, gaps by {:.10g}, times by {:.10g}\n",
-                        range.lambda, range.gamma, range.gamma / range.lambda);
-    text += fmt::format("    stability       {}: a period multiplies a perturbation by {:.6g}\n", range.stable,
-                        range.factor);
-    for (const auto& [from, to] : range.stable_ranges)
-      text += fmt::format("    stable          for r from {:.10g} to {:.10g} (seen, not proved)\n", from, to);
-    for (std::size_t i = 0; i < range.start.gaps.size(); ++i)
-      text += fmt::format("    gap {}           {}, closing speed {}\n", static_cast<char>('a' + i),
-                          range.start.gaps[i], range.start.speeds[i]);
-    text += fmt::format("    collapse        at t = {}\n", range.start.collapse);
-  }
-  text += fmt::format("  not proved: that the word exists for no other r, in a range narrower than {:.1g} or outside\n",
-                      1.0 / (word_points + 1));
-  return text;
-}
-
-namespace {
-
 std::string stable_text(const WordRange& range) {
   std::string text;
   for (const auto& [from, to] : range.stable_ranges)
@@ -127,6 +92,37 @@ std::string scene_of(const WordParticles& particles, const std::vector<WordRepor
 }
 
 }  // namespace
+
+std::string word_text(const WordParticles& particles, const WordReport& report) {
+  std::string text = fmt::format("{}: {}\n", report.word, particles.text());
+  if (particles.left_wall && particles.right_wall) return text + two_walls;
+  if (report.in_order != report.word) text += fmt::format("  in order of time  {}\n", report.in_order);
+  if (report.mirrored) text += "  symmetry          the second half is the mirror image of the first\n";
+  if (!report.degenerate.empty()) text += fmt::format("  degenerate        {}\n", report.degenerate);
+  if (report.ranges.empty())
+    return text + fmt::format("  exists            at none of {} restitutions between 0 and 1 (seen, not proved)\n",
+                              word_points);
+  for (const WordRange& range : report.ranges) {
+    text += fmt::format("  exists            for r from {} to {}\n", range.low.at, range.high.at);
+    text += fmt::format("  existence         {}\n", proof_text(range));
+    for (const auto& [name, end] : {std::pair("lower", &range.low), std::pair("upper", &range.high)})
+      text += fmt::format("  {} end         {} ({})\n", name, end->reason, end->proved ? "proved" : "not proved");
+    text += fmt::format("  at r = {}\n", range.at);
+    text += fmt::format("    a period        multiplies speeds by {:.10g}, gaps by {:.10g}, times by {:.10g}\n",
+                        range.lambda, range.gamma, range.gamma / range.lambda);
+    text += fmt::format("    stability       {}: a period multiplies a perturbation by {:.6g}\n", range.stable,
+                        range.factor);
+    for (const auto& [from, to] : range.stable_ranges)
+      text += fmt::format("    stable          for r from {:.10g} to {:.10g} (seen, not proved)\n", from, to);
+    for (std::size_t i = 0; i < range.start.gaps.size(); ++i)
+      text += fmt::format("    gap {}           {}, closing speed {}\n", static_cast<char>('a' + i),
+                          range.start.gaps[i], range.start.speeds[i]);
+    text += fmt::format("    collapse        at t = {}\n", range.start.collapse);
+  }
+  text += fmt::format("  not proved: that the word exists for no other r, in a range narrower than {:.1g} or outside\n",
+                      1.0 / (word_points + 1));
+  return text;
+}
 
 std::string word_line(const WordReport& report) {
   std::string text;

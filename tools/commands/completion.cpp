@@ -51,8 +51,7 @@ std::vector<std::pair<std::string, std::string>> candidates(const std::vector<Co
     all.emplace_back("--help", ""), all.emplace_back("--version", "");
     return all;
   }
-  const auto command =
-      std::find_if(commands.begin(), commands.end(), [&](const auto& c) { return c.name == words[0]; });
+  const auto command = std::ranges::find(commands, words[0], &CommandText::name);
   if (command == commands.end()) return all;
   const std::string &before = words[words.size() - 2], &word = words.back();
   if (before == "--set" || before == "--vary" || before == "--point") {

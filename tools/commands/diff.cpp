@@ -1,10 +1,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 
 #include "cradle/tools/commands/commands.hpp"
+#include "cradle/tools/ensemble/sweep_points.hpp"
 #include "cradle/tools/result/difference.hpp"
 #include "cradle/tools/result/reader.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
@@ -21,12 +20,10 @@ struct DiffArguments {
 constexpr std::size_t few = 10;  // differences, which are all printed
 
 double tolerance(const std::string& text) {
-  double value = 0;
-  if (text.empty()) return value;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value) || value < 0)
+  const auto value = to_number(text.empty() ? "0" : text);
+  if (!value || *value < 0)
     throw Error({"", 0, "--rtol"}, "not a tolerance", text, "give a number from 0 on, 1e-12 for instance");
-  return value;
+  return *value;
 }
 
 // "series" of "series/energy", "attributes" of "@outcome".

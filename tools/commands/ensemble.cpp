@@ -1,6 +1,7 @@
-#include <charconv>
+#include <cmath>
 
 #include "cradle/tools/commands/study.hpp"
+#include "cradle/tools/ensemble/sweep_points.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
 
 namespace cradle::tools {
@@ -21,10 +22,8 @@ SpreadRequest spread(const std::string& text) {
   const auto equals = text.find('='), colon = text.find(':', equals), second = text.find(':', colon + 1);
   if (equals == text.npos || colon == text.npos || second == text.npos) throw wrong();
   const auto number = [&](std::size_t from, std::size_t to) {
-    double value = 0;
-    const auto [end, error] = std::from_chars(text.data() + from, text.data() + to, value);
-    if (error != std::errc() || end != text.data() + to || !std::isfinite(value)) throw wrong();
-    return value;
+    if (const auto value = to_number(text.substr(from, to - from))) return *value;
+    throw wrong();
   };
   const double from = number(equals + 1, colon), to = number(colon + 1, second), bins = number(second + 1, text.size());
   if (!(from < to) || !(bins >= 1 && bins <= 1e6) || bins != std::floor(bins)) throw wrong();

@@ -16,11 +16,7 @@ std::string text(const std::variant<std::string, double, std::uint64_t>& value) 
 }
 
 // In ensembles: groups with the statistics of one quantity, and groups needed for merging.
-bool is_detail(const Group& group) {
-  const bool mean = std::any_of(group.columns.begin(), group.columns.end(),
-                                [](const Column& column) { return column.name == "mean"; });
-  return mean || group.name.ends_with("ensemble/nodes");
-}
+bool is_detail(const Group& group) { return group.find("mean") != nullptr || group.name.ends_with("ensemble/nodes"); }
 
 // The names of the quantities below a group that have statistics.
 std::string quantities(const Result& result, const std::string& group) {

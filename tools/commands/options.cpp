@@ -171,11 +171,9 @@ Action CommandLine::read(int argc, const char* const* argv) {
       throw Error({}, "no command", "", fmt::format("give one, see `{} --help`", program_->get_name()));
     };
   const char* const first = argc > 1 ? words[1] : "-";
-  const auto is_first = [first](const CLI::App* command) { return command->get_name() == first; };
-  if (*first != '-' && program_->get_subcommands(is_first).empty()) {
-    std::vector<std::string> names;
-    for (const CLI::App* command : program_->get_subcommands([](const CLI::App*) { return true; }))
-      names.push_back(command->get_name());
+  std::vector<std::string> names;
+  for (const CommandText& command : texts()) names.push_back(command.name);
+  if (*first != '-' && std::ranges::find(names, first) == names.end()) {
     const auto nearest = nearest_word(first, names);
     if (nearest.empty()) throw misread(*program_, "no such command", first);
     throw Error({}, "no such command", first, fmt::format("did you mean `{} {}`?", program_->get_name(), nearest));

@@ -58,10 +58,8 @@ class AverageMeasurement {
     Group table = std::move(average_tables(scene_).front());
     const std::vector<TimeAverages::InBin> bins = averages_.averages();
     for (std::size_t q = 0; q < TimeAverages::quantities; ++q) {
-      std::vector<double> values, errors;
-      for (const auto& [value, error] : bins) values.push_back(value[q]), errors.push_back(error[q]);
-      table.columns[2 * q + 1].values = std::move(values);
-      table.columns[2 * q + 2].values = std::move(errors);
+      table.columns[2 * q + 1].values = numbers_of(bins, [q](const auto& bin) { return bin.value[q]; });
+      table.columns[2 * q + 2].values = numbers_of(bins, [q](const auto& bin) { return bin.error[q]; });
     }
     append(table.attributes,
            {{"samples", std::uint64_t{averages_.samples()}}, {"error_growth", averages_.error_growth()}});

@@ -49,15 +49,12 @@ class CorrelationMeasurement {
   void finish(const RunState&, TableSink& put) {
     if (correlator_.samples() == 0 || !(put.for_file() || correlator_.samples() == times_)) return;
     Group table = std::move(correlation_tables(scene_).front());
-    std::vector<double> displacement, of_displacement, velocity, of_velocity;
-    std::vector<BatchMean> displacements;
-    for (const auto& [x, v] : correlator_.correlations()) {
-      displacement.push_back(x.mean), of_displacement.push_back(x.error);
-      velocity.push_back(v.mean), of_velocity.push_back(v.error);
-      displacements.push_back(x);
-    }
-    table = filled(table, table.columns.front().values, std::move(displacement), std::move(of_displacement),
-                   std::move(velocity), std::move(of_velocity));
+    const auto found = correlator_.correlations();
+    const auto displacements = numbers_of(found, &Correlator::Correlation::displacement),
+               velocities = numbers_of(found, &Correlator::Correlation::velocity);
+    table = filled(table, table.columns.front().values, numbers_of(displacements, &BatchMean::mean),
+                   numbers_of(displacements, &BatchMean::error), numbers_of(velocities, &BatchMean::mean),
+                   numbers_of(velocities, &BatchMean::error));
     append(table.attributes, {{"samples", correlator_.samples()},
                               {"particles", std::uint64_t{tagged_}},
                               {"error_growth", error_growth(displacements)}});

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <cmath>
 
 namespace cradle::tools {
@@ -21,9 +20,7 @@ constexpr double first_log_share = 1e-6;
 std::span<const MeasurementRow* const> measurement_rows() { return rows; }
 
 std::size_t row_number(std::string_view name) {
-  const auto found =
-      std::find_if(rows.begin(), rows.end(), [&](const MeasurementRow* row) { return row->name == name; });
-  return static_cast<std::size_t>(found - rows.begin());
+  return static_cast<std::size_t>(std::ranges::find(rows, name, &MeasurementRow::name) - rows.begin());
 }
 
 DecimalColumn series_times(const Scene& scene) {

@@ -30,7 +30,6 @@ using AllMeasurements =
 template <class List> class MeasurementsOf;
 template <class... Each> class MeasurementsOf<MeasurementList<Each...>> {
  public:
-  /// `exact`: whether texts of numbers with all digits are wanted.
   MeasurementsOf(const Scene& scene, AnyEngine& engine, const Schedule& plan, bool exact)
       : scene_(scene), engine_(engine), plan_(plan), exact_(exact) {
     with_rows(all_, [&]<class M>(std::optional<M>& measurement, std::size_t row) {
@@ -89,10 +88,11 @@ template <class... Each> class MeasurementsOf<MeasurementList<Each...>> {
     });
   }
   bool many_rows() const {
-    return any([](const auto& m, std::size_t) {
-      if constexpr (requires { m.rows(); }) return m.rows() >= most_rows;
-      return false;
+    bool many = false;
+    with_rows(all_, [&](const auto& m, std::size_t) {
+      if constexpr (requires { m->rows(); }) many = many || (m && m->rows() >= most_rows);
     });
+    return many;
   }
   void put_rows(const Counts& counts, TableSink& put) {
     each([&](auto& m, std::size_t) {
@@ -132,11 +132,6 @@ template <class... Each> class MeasurementsOf<MeasurementList<Each...>> {
   }
   void each(const auto& f) {
     with_rows(all_, [&](auto& m, std::size_t row) { m ? f(*m, row) : void(); });
-  }
-  bool any(const auto& f) const {
-    bool found = false;
-    with_rows(all_, [&](const auto& m, std::size_t row) { found = found || (m && f(*m, row)); });
-    return found;
   }
 
   const Scene& scene_;

@@ -50,10 +50,8 @@ template <auto wanted, auto make, Group (*table)(const Scene&)> class PlaceMeasu
     if (means_.samples() == 0 || !(put.for_file() || means_.complete())) return;
     Group average = std::move(averages(scene_).front());
     const std::vector<BatchMean> all = means_.means();
-    std::vector<double> values, errors;
-    for (const BatchMean& m : all) values.push_back(m.mean), errors.push_back(m.error);
-    average.columns[1].values = std::move(values);
-    average.columns[2].values = std::move(errors);
+    average.columns[1].values = numbers_of(all, &BatchMean::mean);
+    average.columns[2].values = numbers_of(all, &BatchMean::error);
     append(average.attributes, {{"samples", std::uint64_t{means_.samples()}}, {"error_growth", error_growth(all)}});
     put.add(std::move(average));
   }

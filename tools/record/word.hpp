@@ -2,10 +2,8 @@
 // the scene (core/words/followed.hpp): the table `sequence`.
 #pragma once
 
-#include <limits>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "cradle/core/observe/collision_word.hpp"
@@ -43,19 +41,15 @@ class WordMeasurement {
 
  private:
   Group table() const {
-    std::vector<std::string> letters;
-    std::vector<std::uint64_t> repeats, first;
-    std::vector<double> time;
-    for (auto& block : made_.blocks()) {
-      letters.push_back(std::move(block.letters)), repeats.push_back(block.repeats);
-      first.push_back(block.first), time.push_back(block.time);
-    }
-    Group table{"sequence",
-                {{"gaps", std::uint64_t{gaps_}}},
-                {{"letters", "1", "gaps from the left that close one after the other", std::move(letters)},
-                 {"repeats", "1", "how often these letters follow each other", std::move(repeats)},
-                 {"first", "1", "number of the first of these collisions, from 0", std::move(first)},
-                 {"time", "t", "time of that collision, rounded", std::move(time)}}};
+    using Block = CollisionWord::Block;
+    const std::vector<Block> blocks = made_.blocks();
+    Group table{
+        "sequence",
+        {{"gaps", std::uint64_t{gaps_}}},
+        {{"letters", "1", "gaps from the left that close one after the other", numbers_of(blocks, &Block::letters)},
+         {"repeats", "1", "how often these letters follow each other", numbers_of(blocks, &Block::repeats)},
+         {"first", "1", "number of the first of these collisions, from 0", numbers_of(blocks, &Block::first)},
+         {"time", "t", "time of that collision, rounded", numbers_of(blocks, &Block::time)}}};
     if (!followed_) return table;
     append(table.attributes, {{"word", word_},
                               {"kept", followed_->kept()},
@@ -70,7 +64,7 @@ class WordMeasurement {
   std::size_t gaps_;
   CollisionWord made_;
   std::optional<words::Followed> followed_;
-  double left_at_ = std::numeric_limits<double>::quiet_NaN();
+  double left_at_ = none();
 };
 
 }  // namespace cradle::tools

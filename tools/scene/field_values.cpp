@@ -117,10 +117,8 @@ void read(const Field& field, const Value& value, Scene& scene, bool& target) {
 
 void read(const Field& field, const Value& value, Scene& scene, std::vector<Decimal>& target) {
   if (value.kind != Value::Kind::array) refuse(field, value, scene, "wrong type");
-  std::vector<Decimal> numbers;
-  numbers.reserve(value.items.size());
-  for (const Value& item : value.items) numbers.emplace_back(number_text(field, item, scene));
-  target = std::move(numbers);
+  target.clear();
+  for (const Value& item : value.items) target.emplace_back(number_text(field, item, scene));
 }
 
 void read(const Field& field, const Value& value, Scene& scene, DecimalColumn& target) {

@@ -5,9 +5,8 @@
 #include <fmt/ranges.h>
 
 #include <deque>
-#include <iterator>
 
-#include "cradle/precision/bin_float.hpp"
+#include "cradle/tools/scene/checked.hpp"
 
 namespace cradle::tools {
 namespace {
@@ -133,19 +132,14 @@ std::string particles_as_length(const Scene& s) { return std::to_string(s.initia
 // The left wall and the length of so many particles at their density, as a decimal: rounded if it has no end.
 std::string end_of_gas(const Scene& s) {
   constexpr int digits = 40;
-  const auto number = [](const Decimal& d) { return from_text<bin_float>(d.text); };
   const bin_float length =
-      bin_float(static_cast<std::int64_t>(s.initial.particles)) / number(s.initial.density.value_or(Decimal("1")));
-  return (number(s.walls.left.position.value_or(Decimal("0"))) + length).str(digits);
+      bin_float(static_cast<std::int64_t>(s.initial.particles)) / precise(s.initial.density.value_or(Decimal("1")));
+  return (precise(s.walls.left.position.value_or(Decimal("0"))) + length).str(digits);
 }
 
 std::string hot_as_energy(const Scene& s) { return std::to_string(s.initial.hot); }
 
 std::string collapse_by_cutoff(const Scene& s) { return s.law.cutoff > Decimal("0") ? "\"cutoff\"" : "\"stop\""; }
-
-constexpr auto law_type = member<&Scene::law, &scene::Law::type>;
-constexpr auto initial_type = member<&Scene::initial, &Initial::type>;
-constexpr auto collapse = member<&Scene::run, &Run::collapse>;
 
 template <auto M> constexpr auto law_of = member<&Scene::law, M>;
 template <auto... M> constexpr auto initial_of = member<&Scene::initial, M...>;
@@ -215,10 +209,10 @@ template <WallAt WallPair::*Wall> std::vector<Field> wall_fields(std::string_vie
 }
 
 // key, member, unit, default, range, applies when, documentation
-const Field fields_before_particles[] = {
+const std::vector<Field> fields_before_particles{
     {"title", member<&Scene::title>, "", "\"\"", "", &always, "what the scene shows; printed on pictures"},
 
-    {"law.type", law_type, "", "required", law_names, &always, "what happens at a collision"},
+    {"law.type", law_of<&scene::Law::type>, "", "required", law_names, &always, "what happens at a collision"},
     {"law.restitution", law_of<&scene::Law::restitution>, "", "required", "[0, 1]", &inelastic,
      "factor by which a collision reduces the closing speed; 1 is elastic"},
     {"law.cutoff", law_of<&scene::Law::cutoff>, "l/t", "0", "[0, inf)", &inelastic,
@@ -229,7 +223,8 @@ const Field fields_before_particles[] = {
     {"law.loss", law_of<&scene::Law::loss>, "m l^2/t^2", "required", "[0, inf)", &wet,
      "energy E_loss that it takes to rupture a liquid bridge; pairs with less merge; 0: all collisions are elastic"},
 
-    {"initial.type", initial_type, "", "required", state_names, &always, "which particles there are at the start"},
+    {"initial.type", initial_of<&Initial::type>, "", "required", state_names, &always,
+     "which particles there are at the start"},
     {"initial.left.particles", initial_of<&Initial::left, &scene::Row::particles>, "", "required", "[1, 1e15]",
      &general_rows, "particles of the left row"},
     {"initial.left.speed", initial_of<&Initial::left, &scene::Row::speed>, "l/t", "required", any, &general_rows,
@@ -249,7 +244,7 @@ const Field fields_before_particles[] = {
     {"initial.particles", initial_of<&Initial::particles>, "", "8000", "[2, 1e15] even", &plain_rows,
      "particles of both rows together; the first ones start at plus and minus half the spacing"},
 };
-const Field fields_before_walls[] = {
+const std::vector<Field> fields_before_walls{
     {"initial.density", initial_of<&Initial::density>, "1/l", "", "(0, inf)", &gas,
      "particles per length, 1 if nothing says it: gives walls.right.position, from that of the left wall on"},
     {"initial.hot", initial_of<&Initial::hot>, "", "1", "[1, initial.particles]", &cold,
@@ -320,15 +315,15 @@ const Field fields_before_walls[] = {
      "towards is a floor. Collisions with walls slower than law.cutoff are elastic then; without it, no gravity"},
 };
 
-const Field fields_after_walls[] = {
+const std::vector<Field> fields_after_walls{
     {"run.start", run_of<&Run::start>, "t", "0", any, &always, "time at the initial state"},
     {"run.until", run_of<&Run::until>, "t", "required", "[run.start, inf)", &always, "time at which the run ends"},
     {"run.precision", run_of<&Run::precision>, "", "\"double\"", scalar_names, &always, "the working precision"},
     {"run.digits", run_of<&Run::digits>, "", "50", "[10, 1000]", &mpfr, "decimal digits of mpfr numbers"},
     {"run.coordinates", run_of<&Run::coordinates>, "", "\"gaps\"", "gaps | absolute", &always,
      "gaps and closing speeds, or plain positions"},
-    {"run.collapse", collapse, "", "cutoff with a law.cutoff, else stop", "cutoff | contact-time | merge | stop",
-     &always, "what to do at inelastic collapse", collapse_by_cutoff},
+    {"run.collapse", run_of<&Run::collapse>, "", "cutoff with a law.cutoff, else stop",
+     "cutoff | contact-time | merge | stop", &always, "what to do at inelastic collapse", collapse_by_cutoff},
     {"run.contact_time", run_of<&Run::contact_time>, "t", "required", "(0, inf)", &contact_time,
      "collisions are elastic if one of the two particles had another collision less than this time before"},
     {"run.merge_speed", run_of<&Run::merge_speed>, "l/t", "required", "(0, inf)", &merge,
@@ -471,15 +466,14 @@ template <std::size_t... K> std::vector<Field> number_of_particles(std::index_se
 std::vector<Field> joined() {
   std::vector<Field> all;
   for (const std::vector<Field>& some :
-       {std::vector<Field>(std::begin(fields_before_particles), std::end(fields_before_particles)),
-        number_of_particles(std::make_index_sequence<std::size(initial_rows)>()),
-        std::vector<Field>(std::begin(fields_before_walls), std::end(fields_before_walls)),
+       {fields_before_particles, number_of_particles(std::make_index_sequence<std::size(initial_rows)>()),
+        fields_before_walls,
         wall_fields<&WallPair::left>("left", {"walls.left.position", walls_of<&WallPair::left, &WallAt::position>, "l",
                                               "0", any, &gas, "where the gas begins: the left one of its two walls"}),
         wall_fields<&WallPair::right>("right", {"walls.right.position", walls_of<&WallPair::right, &WallAt::position>,
                                                 "l", "initial.particles/initial.density on", any, &gas,
                                                 "where the gas ends: the right one of its two walls", end_of_gas}),
-        std::vector<Field>(std::begin(fields_after_walls), std::end(fields_after_walls))})
+        fields_after_walls})
     all.insert(all.end(), some.begin(), some.end());
   return all;
 }

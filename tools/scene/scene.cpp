@@ -2,8 +2,7 @@
 
 #include <algorithm>
 
-#include "cradle/precision/bin_float.hpp"
-#include "cradle/tools/scene/fields.hpp"
+#include "cradle/tools/scene/checked.hpp"
 
 namespace cradle::tools {
 
@@ -68,11 +67,10 @@ Place Scene::place(std::string_view key) const {
 
 std::uint64_t longest_lag(const Scene& scene) {
   const Correlations& wanted = scene.output.correlations;
-  const auto number = [](const Decimal& d) { return from_text<bin_float>(d.text); };
-  bin_float span = number(wanted.until) - number(wanted.from);
-  if (wanted.longest && number(*wanted.longest) < span) span = number(*wanted.longest);
+  bin_float span = precise(wanted.until) - precise(wanted.from);
+  if (wanted.longest && precise(*wanted.longest) < span) span = precise(*wanted.longest);
   // Rounding to a double makes a quotient of decimals whole that is so.
-  return static_cast<std::uint64_t>(static_cast<double>(bin_float(span / number(*wanted.every))));
+  return static_cast<std::uint64_t>(static_cast<double>(bin_float(span / precise(*wanted.every))));
 }
 
 }  // namespace cradle::tools

@@ -146,15 +146,18 @@ Value value_of(const toml::node& node, const Literals& literals, const Place& pl
   return value;
 }
 
-void flatten(const toml::table& table, const Literals& literals, const Place& place, Entries& entries) {
-  for (const auto& [name, node] : table) {
+// A table without keys is a value, unless it is the whole text.
+void flatten(const toml::node& node, const Literals& literals, const Place& place, Entries& entries) {
+  const auto* table = node.as_table();
+  if (table == nullptr || (table->empty() && !place.key.empty())) {
+    entries.insert_or_assign(place.key, value_of(node, literals, place));
+    return;
+  }
+  for (const auto& [name, below] : *table) {
     Place inner = place;
     if (!inner.key.empty()) inner.key += '.';
     inner.key += name.str();
-    if (const auto* nested = node.as_table(); nested != nullptr && !nested->empty())
-      flatten(*nested, literals, inner, entries);
-    else
-      entries.insert_or_assign(inner.key, value_of(node, literals, inner));
+    flatten(below, literals, inner, entries);
   }
 }
 
@@ -166,11 +169,7 @@ std::optional<Entries> assigned(std::string_view text, const Place& place) {
     if (table.size() != 1) return {};  // TEXT had a line end and a second key
     const Literals literals(document);
     Entries entries;
-    const toml::node& node = *table.get("value");
-    if (const auto* nested = node.as_table(); nested != nullptr && !nested->empty())
-      flatten(*nested, literals, place, entries);
-    else
-      entries.emplace(place.key, value_of(node, literals, place));
+    flatten(*table.get("value"), literals, place, entries);
     for (auto& [key, value] : entries) {
       value.place.line = 0;
       for (auto& item : value.items) item.place.line = 0;

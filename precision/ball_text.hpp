@@ -1,6 +1,7 @@
 #pragma once
 // Balls as readable intervals: decimals and doubles, rounded outwards, so that they contain the ball.
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -41,18 +42,12 @@ template <int Limbs> Enclosure<std::string> decimals(const Mpfr<Limbs>& middle, 
 
 }  // namespace detail
 
-// The number of decimal digits that are known: log10 of the ratio of size to radius; 0 if nothing is known.
-template <class M> int digits_known(const Ball<M>& x) {
-  if (!is_finite(x)) return 0;
-  const auto size = static_cast<long double>(Midpoint<M>::size(x.middle()));
-  const long double digits = x.radius() > 0 && size > 0 ? std::log10(size / x.radius()) : size > 0 ? 40 : 0;
-  return digits > 0 ? static_cast<int>(digits) : 0;
-}
-
-// Both ends, with two digits more than are known.
+// Both ends, with two digits more than are known: these are log10 of the ratio of size to radius.
 template <class M> Enclosure<std::string> in_decimals(const Ball<M>& x) {
   if (!is_finite(x)) return {"-inf", "inf"};
-  return detail::decimals(x.middle(), x.radius(), digits_known(x) + 3);
+  const auto size = static_cast<long double>(Midpoint<M>::size(x.middle()));
+  const long double known = x.radius() > 0 && size > 0 ? std::log10(size / x.radius()) : size > 0 ? 40 : 0;
+  return detail::decimals(x.middle(), x.radius(), static_cast<int>(std::max(known, 0.L)) + 3);
 }
 
 // The nearest doubles on either side; infinite if there are none.

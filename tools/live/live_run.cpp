@@ -6,8 +6,8 @@
 #include "cradle/core/parallel/workers.hpp"
 #include "cradle/tools/result/writer.hpp"
 #include "cradle/tools/scene/scene.hpp"
-#include "cradle/tools/setup/read_scene.hpp"
 #include "cradle/tools/store/checkpoint.hpp"
+#include "cradle/tools/store/run_journal.hpp"
 #include "cradle/tools/support/atomic_file.hpp"
 
 namespace cradle::tools {
@@ -42,8 +42,7 @@ LiveRun::LiveRun(const std::string& checkpoint, const LiveOptions& options)
   if (header.kind != live_kind)
     throw Error({checkpoint, 0, ""}, "a checkpoint of another command", header.kind, "continue it with `cradle resume`",
                 Exit::io);
-  scene_ = parse_scene(header.scene, checkpoint);
-  scene_.name = header.name;
+  scene_ = scene_of(header, checkpoint);
   begin(options);
   std::vector<Group> rows;
   try {

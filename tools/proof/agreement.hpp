@@ -124,9 +124,6 @@ template <Enclosing N> class Agreement {
     else
       number(quantity, std::isnan(of_run) ? "" : fmt::format("{}", of_run), of_proof, bound);
   }
-  void place(const std::string& quantity, const std::string& of_run, const std::optional<N>& of_proof) {
-    number(quantity, of_run, of_proof, errors_.place);
-  }
 
  private:
   // `exact`: what the run has, if that is finite.

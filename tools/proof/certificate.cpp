@@ -3,9 +3,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
 #include <span>
 
 #include "cradle/tools/proof/certify.hpp"
@@ -167,8 +165,7 @@ std::string attempts_text(const Certified& run) {
 }
 
 void Bounds::add(const std::optional<Enclosed>& x) {
-  constexpr double none = std::numeric_limits<double>::quiet_NaN();
-  low.push_back(x ? x->doubles.low : none), high.push_back(x ? x->doubles.high : none);
+  low.push_back(x ? x->doubles.low : none()), high.push_back(x ? x->doubles.high : none());
   low_text.push_back(x ? x->decimals.low : "nan"), high_text.push_back(x ? x->decimals.high : "nan");
 }
 

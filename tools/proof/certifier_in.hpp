@@ -89,13 +89,11 @@ template <class M> class CertifierIn final : public Certifier {
       return reported(*broken, certificate_.samples.empty() ? 0 : certificate_.samples.back().time);
     tables.put(result);
     ProvedTables<N> rests;  // of the times that the file has now
-    if (const Group* events = result.find("events"))
-      for (const Column& column : events->columns) {
-        const auto* times = std::get_if<std::vector<double>>(&column.values);
-        if (column.name != "time" || times == nullptr) continue;
+    const Group* events = result.find("events");
+    if (const Column* time = events == nullptr ? nullptr : events->find("time"))
+      if (const auto* times = std::get_if<std::vector<double>>(&time->values))
         for (std::size_t k = 0; k < meetings_.size() && k < times->size(); ++k)
           rests.add("events/time_low", k, meetings_[k].time - exactly<N>((*times)[k]), 0);
-      }
     rests.put(result);
     return {};
   }
@@ -187,7 +185,7 @@ template <class M> class CertifierIn final : public Certifier {
       of_file("energy_lost", particles_->kinetic_energy() - state.energy, 2 * errors.energy);
     for (const auto& [name, of_run, of_proof] : {std::tuple("front_left", &sample.front_left, &state.front_left),
                                                  std::tuple("front_right", &sample.front_right, &state.front_right)}) {
-      run.place(name, *of_run, *of_proof);
+      run.number(name, *of_run, *of_proof, errors.place);
       if (!particles_->on_ring()) of_file(name, *of_proof, errors.place);
     }
     for (const End end : {End::left, End::right}) {

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 
 #include "cradle/tools/ensemble/layout.hpp"
 #include "cradle/tools/ensemble/state.hpp"
@@ -23,7 +22,7 @@ struct Kept {
 Kept kept(std::uint64_t index, const Certified& run, const std::vector<double>& times) {
   const Certificate& c = run.certificate;
   Kept kept{{index, run.proved(), c.digits, c.collisions, {0, 0}, run.undecided()},
-            std::vector<double>(times.size(), std::numeric_limits<double>::quiet_NaN())};
+            std::vector<double>(times.size(), none())};
   if (!c.samples.empty()) kept.row.energy = c.samples.back().energy.doubles;
   for (const CertainSample& s : c.samples) {
     const auto at = std::lower_bound(times.begin(), times.end(), s.time);

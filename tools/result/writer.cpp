@@ -66,9 +66,9 @@ std::string padded(const Texts& texts, std::size_t bytes) {
   return all;
 }
 
-// Makes a column for so many rows.
-Handle make_column(hid_t group, const Column& column, std::uint64_t rows, const Common& common) {
-  const hsize_t shape[2] = {rows, column.width};
+// Makes a column with room for its rows.
+Handle make_column(hid_t group, const Column& column, const Common& common) {
+  const hsize_t shape[2] = {column.rows(), column.width};
   const Handle space(H5Screate_simple(column.width > 1 ? 2 : 1, shape, nullptr), H5Sclose, no_room);
   const auto make = [&](hid_t type) {
     return Handle(H5Dcreate2(group, column.name.c_str(), type, space, H5P_DEFAULT, common.columns, H5P_DEFAULT),
@@ -105,12 +105,6 @@ void describe(hid_t data, const Column& column, const Common& common) {
   write_attribute(data, {"description", column.description}, common);
 }
 
-void write_column(hid_t group, const Column& column, const Common& common) {
-  const Handle data = make_column(group, column, column.rows(), common);
-  write_rows(data, column, 0);
-  describe(data, column, common);
-}
-
 // With room for these columns at once: HDF5 would copy all that is there each time that it makes more.
 Handle file_in_memory(const Result& result) {
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, no_room);
@@ -141,7 +135,11 @@ std::string file_image(const Result& result) {
   const Handle file = file_in_memory(result);
   const Common common;
   write_groups(file, result, common, [&](hid_t group, const Group& table) {
-    for (const auto& column : table.columns) write_column(group, column, common);
+    for (const auto& column : table.columns) {
+      const Handle data = make_column(group, column, common);
+      write_rows(data, column, 0);
+      describe(data, column, common);
+    }
   });
   check(H5Fflush(file, H5F_SCOPE_GLOBAL), no_room);
   const ssize_t size = H5Fget_file_image(file, nullptr, 0);
@@ -174,7 +172,7 @@ void write_in_pieces(const Result& ends, const Pieces& pieces, const std::string
     write_groups(file, ends, common, [&](hid_t group, const Group& table) {
       Open& here = open[table.name];
       for (const Column& column : table.columns) {
-        here.columns.push_back(make_column(group, column, column.rows(), common));
+        here.columns.push_back(make_column(group, column, common));
         describe(here.columns.back(), column, common);
       }
     });

@@ -5,11 +5,9 @@
 #include <array>
 #include <filesystem>
 
-#include "cradle/tools/record/rows.hpp"
 #include "cradle/tools/result/growing_tables.hpp"
 #include "cradle/tools/result/reader.hpp"
 #include "cradle/tools/run/run.hpp"
-#include "cradle/tools/scene/scene.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
 #include "cradle/tools/store/run_files.hpp"
 #include "cradle/tools/support/checksum.hpp"
@@ -97,8 +95,7 @@ std::vector<Group> recorded(std::vector<Group> groups, const Scene& scene) {
   std::erase_if(groups, [](const Group& g) {
     const std::string_view name = rounded_name(g.name), folder = name.substr(0, name.find('/'));
     const auto rows = measurement_rows();
-    return name == "collapse" ||
-           std::any_of(rows.begin(), rows.end(), [&](auto* row) { return row->at_end == folder; });
+    return name == "collapse" || std::ranges::find(rows, folder, &MeasurementRow::at_end) != rows.end();
   });
   // The file returns attributes in another order than they were written.
   const auto rank = [](const Attribute& attribute) {

@@ -6,10 +6,8 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <concepts>
 #include <cstdint>
 #include <sstream>
-#include <type_traits>
 
 #include "cradle/precision/text.hpp"
 #include "cradle/tools/run/run.hpp"
@@ -76,11 +74,7 @@ std::string scene_of(const WordParticles& particles, const std::vector<WordRepor
                     "[initial]\ntype = \"list\"\nx = {}\nv = {}\n",
                     reports.size() == 1 ? "self-similar collapse" : "words of collapse, the first:", report.word,
                     range.at, list_of(range.start.x), list_of(range.start.v));
-    if (!particles.masses.empty()) {
-      std::vector<std::string> masses;
-      for (const Decimal& mass : particles.masses) masses.push_back(mass.text);
-      scene += "m = " + list_of(masses) + '\n';
-    }
+    if (!particles.masses.empty()) scene += "m = " + list_of(numbers_of(particles.masses, &Decimal::text)) + '\n';
     for (const auto& [is, wall] :
          {std::pair(particles.left_wall, "left]\nposition = 0"), {particles.right_wall, "right]\nposition = 1"}})
       if (is) scene += fmt::format("[walls.{}\nrestitution = {}\n", wall, range.at);
@@ -140,15 +134,15 @@ Result words_result(const WordParticles& particles, const std::vector<WordReport
   result.attributes = provenance(parse_scene(scene_of(particles, reports), "words.toml"),
                                  fmt::format("mpfr, {} digits", 4 * particles.digits), "words of collapse");
   result.attributes.emplace_back("kind", std::string("words"));
-  const auto of_range = [&](const char* name, const std::string& description, auto value) {
-    using Value = std::decay_t<std::invoke_result_t<decltype(value), const WordRange&>>;
-    std::vector<std::conditional_t<std::same_as<Value, bool>, std::uint64_t, Value>> values;
-    for (const WordReport& report : reports)
-      for (const WordRange& range : report.ranges) values.push_back(std::invoke(value, range));
-    return Column{name, "1", description, std::move(values)};
-  };
   std::vector<std::string> word;
-  for (const WordReport& report : reports) word.insert(word.end(), report.ranges.size(), report.word);
+  std::vector<WordRange> ranges;
+  for (const WordReport& report : reports) {
+    word.insert(word.end(), report.ranges.size(), report.word);
+    ranges.insert(ranges.end(), report.ranges.begin(), report.ranges.end());
+  }
+  const auto of_range = [&](const char* name, const std::string& description, auto value) {
+    return Column{name, "1", description, numbers_of(ranges, value)};
+  };
   using Range = const WordRange&;
   using Stable = std::pair<double, double>;
   const auto first_stable = [](double Stable::*end) {

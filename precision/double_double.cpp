@@ -3,7 +3,6 @@
 #include "cradle/precision/double_double.hpp"
 
 #include <boost/multiprecision/cpp_bin_float.hpp>
-#include <cmath>
 #include <optional>
 
 #include "cradle/precision/fixed_point.hpp"

@@ -58,7 +58,6 @@ struct PlannedTimes {
   double until = 0;
 };
 
-/// The times of the series of a scene.
 DecimalColumn series_times(const Scene& scene);
 
 /// The tables of a result in their order: those that grow and those at times,

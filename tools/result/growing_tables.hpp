@@ -10,7 +10,6 @@
 
 namespace cradle::tools {
 
-/// Tables that grow by pieces of rows.
 class GrowingTables {
  public:
   /// Keeps all rows of every table, or only the first and the last one and the number between them.

@@ -1,5 +1,4 @@
-// Reads result files. The seal reveals damaged files (seal.hpp). Nothing in a file is trusted: names, types, shapes and
-// sizes are checked before use.
+// Reads result files. The seal reveals damaged files (seal.hpp), and nothing in a file is trusted (hdf5_values.hpp).
 #pragma once
 
 #include <string>

@@ -15,7 +15,6 @@
 
 namespace cradle::tools {
 
-/// The beginning of a checkpoint.
 struct CheckpointHeader {
   JournalHeader run;                     // of the journal that it belongs to, which has the same identity
   std::uint64_t records = 0, check = 0;  // of the journal at that time: number of records, checksum of the last one

@@ -18,8 +18,7 @@ namespace {
 constexpr std::chrono::seconds between_statuses(2);
 constexpr double worth_keeping = 60;  // seconds of computing that a new run must not overwrite
 constexpr double soon_repeated = 10;  // seconds of computing for which no checkpoint stays
-constexpr std::uint64_t most_waiting = std::uint64_t{1}
-                                       << 22;  // numbers in memory that are not in a journal that has begun
+constexpr std::uint64_t most_waiting = std::uint64_t{1} << 22;  // numbers that are not in a journal that has begun
 
 }  // namespace
 

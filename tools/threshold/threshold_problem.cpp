@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "cradle/tools/scene/fields.hpp"
-#include "cradle/tools/scene/scene.hpp"
 #include "cradle/tools/scene/source.hpp"
 #include "cradle/tools/support/checksum.hpp"
 #include "cradle/tools/support/spelling.hpp"

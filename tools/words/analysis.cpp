@@ -18,7 +18,6 @@ namespace {
 
 constexpr long double tolerance = 1e-11L;
 
-// The analysis in one type of numbers.
 template <class T> class Analyst {
   using B = Ball<T>;
 

@@ -9,7 +9,9 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <numeric>
 #include <optional>
+#include <ostream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -81,10 +83,7 @@ inline Drawn draw(std::uint64_t number) {
   constexpr const char* coefficients[] = {"1", "0.999", "0.999999", "0.5", "0.9", "0.1", "0.95"};
   d.restitution = coefficients[below(7)];
   d.cutoff = below(3) == 0 ? 0 : small ? 64 : 1 + below(40);
-  if (below(3) == 0) {
-    d.length = 50;
-    for (const int gap : d.gaps) d.length += gap;
-  }
+  if (below(3) == 0) d.length = std::accumulate(d.gaps.begin(), d.gaps.end(), 50);
   return d;
 }
 
@@ -146,12 +145,33 @@ inline Drawn draw_falling(std::uint64_t number) {
   return d;
 }
 
+// What happens in all scenes of a family.
+struct Totals {
+  std::uint64_t runs = 0, collisions = 0, merges = 0, below_cutoff = 0, on_walls = 0, at_ceilings = 0, on_thermal = 0;
+  void expect_at_least(const Totals& least) const {
+    EXPECT_GE(runs, least.runs);
+    EXPECT_GE(collisions, least.collisions);
+    EXPECT_GE(merges, least.merges);
+    EXPECT_GE(below_cutoff, least.below_cutoff);
+    EXPECT_GE(on_walls, least.on_walls);
+    EXPECT_GE(at_ceilings, least.at_ceilings);
+    EXPECT_GE(on_thermal, least.on_thermal);
+  }
+};
+// Scenes of one kind: how many are drawn, and what happens in them at least.
+struct Family {
+  const char* name;
+  Drawn (*draw)(std::uint64_t number);
+  std::uint64_t scenes;
+  Totals least;
+  GasLaw law = GasLaw::inelastic;
+  friend std::ostream& operator<<(std::ostream& out, const Family& family) { return out << family.name; }
+};
+
 // Where a wall stands, in 64ths, and its velocity.
 inline int place_of(const Drawn& d, std::size_t side) {
   if (side == 0) return -d.walls[0]->gap;
-  int last = 0;
-  for (std::size_t b = 0; b + 1 < d.gaps.size(); ++b) last += d.gaps[b];
-  return last + d.walls[1]->gap;
+  return std::accumulate(d.gaps.begin(), d.gaps.end() - 1, d.walls[1]->gap);
 }
 inline int velocity_of(const Drawn& d, std::size_t side) { return (side == 0 ? 1 : -1) * d.walls[side]->speed; }
 constexpr std::uint64_t wall_seed = 21;

@@ -12,6 +12,7 @@
 #include <functional>
 #include <limits>
 #include <optional>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -22,6 +23,9 @@
 namespace cradle::test {
 
 using std::exp, std::pow, std::sqrt;  // of long double; those of wider numbers are found by their types
+inline Rational sqrt(const Rational&) { throw std::logic_error("a root of a rational"); }
+inline Rational exp(const Rational&) { throw std::logic_error("the exponential of a rational"); }
+inline Rational pow(const Rational&, const Rational&) { throw std::logic_error("a rational power"); }
 
 enum class GasLaw { inelastic, contact_time, merging, sticky, wet };
 
@@ -60,27 +64,18 @@ template <class T> struct Gas {
   }
   // Makes the next collision not after `until`; `wrong_side`: as if it were on the other side of the cut-off.
   std::optional<std::pair<std::int64_t, std::int64_t>> next(const T& until, bool wrong_side = false) {
+    if (tied) return std::nullopt;
     std::optional<T> first;
     std::vector<std::int64_t> together;  // gaps, by the cell on their left; -1: the left wall
-    const auto may_meet = [&](std::int64_t gap, const T& apart, const T& w) {
-      if (!(w > 0)) return;
-      const T due = apart / w;
-      if (!first || due < *first) first = due, together.clear();
-      if (due == *first) together.push_back(gap);
+    const auto may_close = [&](std::int64_t gap, const std::optional<T>& due) {
+      if (due && (!first || *due < *first)) first = due, together.clear();
+      if (due && *due == *first) together.push_back(gap);
     };
-    for (std::size_t k = 0; k < pairs() && !tied; ++k)
-      may_meet(static_cast<std::int64_t>(k), cells[after(k)].origin + seam(k) - cells[k].origin,
-               cells[k].v - cells[after(k)].v);
-    if (acceleration != 0 && !tied) {
-      for (const bool left : {true, false}) {
-        const auto due = walls[left ? 0 : 1] ? falls_on(left) : std::nullopt;
-        if (due && (!first || *due < *first)) first = due, together.clear();
-        if (due && *due == *first) together.push_back(left ? -1 : last());
-      }
-    } else if (!tied) {
-      if (walls[0]) may_meet(-1, cells.front().origin - walls[0]->origin, walls[0]->v - cells.front().v);
-      if (walls[1]) may_meet(last(), walls[1]->origin - cells.back().origin, cells.back().v - walls[1]->v);
-    }
+    for (std::size_t k = 0; k < pairs(); ++k)
+      may_close(static_cast<std::int64_t>(k),
+                closes(cells[after(k)].origin + seam(k) - cells[k].origin, cells[k].v - cells[after(k)].v));
+    if (walls[0]) may_close(-1, meets_wall(true));
+    if (walls[1]) may_close(last(), meets_wall(false));
     if (!first || *first > until) return std::nullopt;
     time = *first;
     for (const std::int64_t a : together)
@@ -103,14 +98,10 @@ template <class T> struct Gas {
     return twice / 2;
   }
   const Cell* outermost(bool left) const {
-    if (length > 0) return nullptr;
-    const auto touched = [](const Cell& cell) { return cell.touched.has_value(); };
-    if (left) {
-      const auto at = std::find_if(cells.begin(), cells.end(), touched);
-      return at == cells.end() ? nullptr : &*at;
-    }
-    const auto at = std::find_if(cells.rbegin(), cells.rend(), touched);
-    return at == cells.rend() ? nullptr : &*at;
+    const Cell* found = nullptr;
+    for (const Cell& cell : cells)
+      if (cell.touched && !(left && found)) found = &cell;
+    return length > 0 ? nullptr : found;
   }
   const Cell& cell_of(std::int64_t particle) const {
     return *std::find_if(cells.begin(), cells.end(), [&](const Cell& cell) {
@@ -131,27 +122,30 @@ template <class T> struct Gas {
   std::int64_t last() const { return static_cast<std::int64_t>(cells.size()) - 1; }
   T flown(const Cell& cell) const { return cell.origin + cell.v * time; }
 
-  // When the outermost particle meets a wall under gravity: gap - w t - p t^2/2 = 0, the next time from now. Just
-  // after their own collision the gap is 0.
-  std::optional<T> falls_on(bool left) const {
-    if constexpr (std::is_same_v<T, Rational>) {
-      return {};
-    } else {
-      const Cell& cell = left ? cells.front() : cells.back();
-      const T p = left ? T(-acceleration) : acceleration,
-              w = left ? T(walls[0]->v - velocity(cell)) : T(velocity(cell) - walls[1]->v);
-      if (latest && *latest == (left ? -1 : last()) && *cell.touched == time) {
-        const T back = -2 * w / p;
-        return back > 0 ? std::optional(T(time + back)) : std::nullopt;
-      }
-      const T square = w * w + 2 * p * gap_to_wall(left);
-      if (!(square > 0)) return {};
-      std::optional<T> soonest;
-      for (const T& root : {T((-w - sqrt(square)) / p), T((-w + sqrt(square)) / p)})
-        if (root > 0 && (!soonest || root < *soonest)) soonest = root;
-      if (!soonest) return {};
-      return T(time + *soonest);
+  static std::optional<T> closes(const T& apart, const T& w) {
+    return w > 0 ? std::optional(T(apart / w)) : std::nullopt;
+  }
+  // When the outermost particle meets a wall. Under gravity gap - w t - p t^2/2 = 0, the next time from now; just after
+  // their own collision the gap is 0.
+  std::optional<T> meets_wall(bool left) const {
+    const Cell& cell = left ? cells.front() : cells.back();
+    const GasWall<T>& wall = *walls[left ? 0 : 1];
+    if (acceleration == 0)
+      return left ? closes(cell.origin - wall.origin, wall.v - cell.v)
+                  : closes(wall.origin - cell.origin, cell.v - wall.v);
+    const T p = left ? T(-acceleration) : acceleration,
+            w = left ? T(wall.v - velocity(cell)) : T(velocity(cell) - wall.v);
+    if (latest && *latest == (left ? -1 : last()) && *cell.touched == time) {
+      const T back = -2 * w / p;
+      return back > 0 ? std::optional(T(time + back)) : std::nullopt;
     }
+    const T square = w * w + 2 * p * gap_to_wall(left);
+    if (!(square > 0)) return {};
+    std::optional<T> soonest;
+    for (const T& root : {T((-w - sqrt(square)) / p), T((-w + sqrt(square)) / p)})
+      if (root > 0 && (!soonest || root < *soonest)) soonest = root;
+    if (!soonest) return {};
+    return T(time + *soonest);
   }
   std::size_t after(std::size_t k) const { return k + 1 < cells.size() ? k + 1 : 0; }
   T seam(std::size_t k) const { return k + 1 < cells.size() ? T(0) : length; }
@@ -164,9 +158,8 @@ template <class T> struct Gas {
                soon = acceleration != 0 && law == GasLaw::contact_time && cell.touched &&
                       time - *cell.touched < contact_time;
     const T of_wall = below || soon ? T(1) : wall.restitution;
-    const T after = wall.random_speed ? T(left ? T(wall.v + wall.random_speed(wall.collisions, cell.m))
-                                               : T(wall.v - wall.random_speed(wall.collisions, cell.m)))
-                                      : T(wall.v - of_wall * relative);
+    T after = wall.v - of_wall * relative;
+    if (wall.random_speed) after = wall.v + (left ? 1 : -1) * wall.random_speed(wall.collisions, cell.m);
     cell.v += after - before;
     cell.origin = x - cell.v * time;
     cell.touched = time;
@@ -193,10 +186,12 @@ template <class T> struct Gas {
     if (law == GasLaw::sticky || (law == GasLaw::merging && w < merge_speed) ||
         (law == GasLaw::wet && !(w * w > 2 * loss / reduced)))
       return merge(k, x_l);
-    if (law == GasLaw::wet) return pass(k, after_bridge(w, reduced), x_l, x_r);
+    if (law == GasLaw::wet) return pass(k, sqrt(T(w * w - 2 * loss / reduced)), x_l, x_r);
     const bool below = memory || (law != GasLaw::merging && (w < cutoff) != wrong_side);
     below_cutoff += below;
-    const T impulse = reduced * w * (1 + (cutoff_exponent > 0 ? at_speed(w) : below ? T(1) : restitution));
+    T kept = below ? T(1) : restitution;
+    if (cutoff_exponent > 0) kept = restitution + (1 - restitution) * exp(T(-pow(T(w / cutoff), cutoff_exponent)));
+    const T impulse = reduced * w * (1 + kept);
     l.v -= impulse / l.m;
     r.v += impulse / r.m;
     l.origin = x_l - l.v * time;
@@ -213,22 +208,10 @@ template <class T> struct Gas {
     l.particles.insert(l.particles.end(), r.particles.begin(), r.particles.end());
     cells.erase(cells.begin() + static_cast<std::ptrdiff_t>(after(k)));
   }
-  T at_speed(const T& w) const {
-    if constexpr (std::is_same_v<T, Rational>)
-      return w;
-    else
-      return T(restitution + (1 - restitution) * exp(T(-pow(T(w / cutoff), cutoff_exponent))));
-  }
-  // The closing speed is now a speed of separation.
-  T after_bridge(const T& w, const T& reduced) const {
-    if constexpr (std::is_same_v<T, Rational>)
-      return w;
-    else
-      return T(sqrt(T(w * w - 2 * loss / reduced)));
-  }
+  // The closing speed becomes a speed of separation.
   void pass(std::size_t k, const T& parting, const T& x_l, const T& x_r) {
     Cell &l = cells[k], &r = cells[after(k)];
-    const T centre = (l.m * l.v + r.m * r.v) / (l.m + r.m), all = l.m + r.m;
+    const T all = l.m + r.m, centre = (l.m * l.v + r.m * r.v) / all;
     l.v = centre + r.m * parting / all;
     r.v = centre - l.m * parting / all;
     std::swap(l.v, r.v), std::swap(l.m, r.m), std::swap(l.particles, r.particles), std::swap(l.touched, r.touched);

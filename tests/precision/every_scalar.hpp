@@ -17,12 +17,6 @@ template <class T, unsigned Digits = 0> struct Precision {
   static constexpr unsigned digits = Digits;
 };
 
-template <class P> void set_precision() {
-#ifdef CRADLE_WITH_MPFR
-  if (P::digits > 0) MpfrPrecision::set_bits(MpfrPrecision::bits_for(P::digits));
-#endif
-}
-
 template <class... Lists> struct Joined;
 template <class... P> struct Joined<testing::Types<P...>> { using Types = testing::Types<P...>; };
 template <class... P, class... Q, class... More>
@@ -62,12 +56,12 @@ struct PrecisionName {
   }
 };
 
-// The number, exactly: as a sum of doubles.
-template <class Reference, class T> Reference sum_of_doubles(T x) {
-  Reference sum(0);
+// The number in 100 digits, as a sum of doubles.
+template <class T> bin_float in_100_digits(T x) {
+  bin_float sum(0);
   for (int part = 0; part < 8 && !(x == T(0)); ++part) {
     const double leading = to_double(x);
-    sum += cradle::exactly<Reference>(leading);
+    sum += bin_float(leading);
     x -= cradle::exactly<T>(leading);
   }
   return sum;
@@ -95,9 +89,11 @@ template <class T> Policy<T> stop_below(const T& gap) {
 
 template <class P> class InPrecision : public testing::Test {
  protected:
-  using Scalar = typename P::Scalar;
-  static constexpr unsigned digits = P::digits;
-  void SetUp() override { set_precision<P>(); }
+  void SetUp() override {
+#ifdef CRADLE_WITH_MPFR
+    if (P::digits > 0) MpfrPrecision::set_bits(MpfrPrecision::bits_for(P::digits));
+#endif
+  }
 };
 
 }  // namespace cradle::test

@@ -10,15 +10,10 @@
 
 namespace cradle::test::gravity_in_types_test {
 
-template <class T> using Falling = GapChain<T, IndividualMasses<T>>;
-template <class T> using FallingRun = Simulation<T, Inelastic<T>, Falling<T>>;
-
-template <class T> Scene<T> under(const T& acceleration, const Scene<T>& particles, const Wall<T>& floor) {
-  return std::make_shared<Walled<T>>(particles, floor, std::nullopt, acceleration);
-}
 template <class T> std::vector<T> bounces(const T& acceleration, const T& height, std::size_t count, const T& until) {
-  const auto ball = under<T>(T(-acceleration), list<T>({height}, {T(0)}), Wall<T>{T(0)});
-  FallingRun<T> run(Inelastic<T>(T(1)), Falling<T>(ball, T(0)));
+  const Scene<T> ball =
+      std::make_shared<Walled<T>>(list<T>({height}, {T(0)}), Wall<T>{T(0)}, std::nullopt, T(-acceleration));
+  auto run = mass_run(ball, Inelastic<T>(T(1)));
   std::vector<T> times;
   EXPECT_EQ(run.advance(until, [&](const Collision<T>& c) { times.push_back(c.time.value()); }), Status::reached);
   EXPECT_EQ(times.size(), count);
@@ -32,7 +27,7 @@ TYPED_TEST_SUITE(FallIn, EveryPrecision, PrecisionName);
 // From the height k^2 with the acceleration 2 a ball is on the floor at the times k (2 n - 1). With k of less than half
 // the digits of the type every number on the way can be exact.
 TYPED_TEST(FallIn, ABallBouncesAThousandTimesToTheLastBit) {
-  using T = typename TestFixture::Scalar;
+  using T = typename TypeParam::Scalar;
   const T epsilon = std::numeric_limits<T>::epsilon();
   T k(1);
   while (k * k * k * k * T(81) * T(1 << 24) * epsilon < T(1) && k < T(std::int64_t{1} << 60)) k *= T(3);
@@ -48,7 +43,7 @@ TYPED_TEST(FallIn, ABallBouncesAThousandTimesToTheLastBit) {
 }
 
 using Reference = bin_float;
-template <class T> Reference exact(const T& x) { return sum_of_doubles<Reference>(x); }
+template <class T> Reference exact(const T& x) { return in_100_digits(x); }
 
 struct ByDigits {
   bool meets;

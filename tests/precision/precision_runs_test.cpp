@@ -29,8 +29,6 @@ template <class P> using EveryScalarRun = InPrecision<P>;
 TYPED_TEST_SUITE(EveryScalarRun, EveryPrecision, PrecisionName);
 template <class P> using SlowScalarRun = InPrecision<P>;
 TYPED_TEST_SUITE(SlowScalarRun, EachKindOfPrecision, PrecisionName);
-template <class P> using EveryScalarCollapse = InPrecision<P>;
-TYPED_TEST_SUITE(EveryScalarCollapse, EveryPrecision, PrecisionName);
 
 struct Count {
   int time;
@@ -71,7 +69,8 @@ TYPED_TEST(SlowScalarRun, ShockOfThePapersFigure2) {
 }
 
 struct Collapse {
-  Reference time, ratio;  // t_c and q
+  Reference time, ratio;        // t_c and q
+  Reference to_right, to_left;  // a_r and a_l
 };
 
 // Particles at 0, 1, 3 with velocities 1, 0, -1: t_0 = 1, g_0 = p_0 = 1, the right gap closes at 1 until then.
@@ -81,7 +80,7 @@ template <class T> Collapse closed_form(const T& restitution, const std::vector<
   const Reference to_right = (1 + eps) * m1 / (m1 + m2), to_left = (1 + eps) * m3 / (m2 + m3);
   const Reference a = sqrt(to_right * to_left), r = sqrt(to_right / to_left), root = sqrt(a * a - 4 * eps);
   const Reference slow = (a - root) / 2;
-  return {1 + 1 / (1 + to_right - r * slow), (a - root) / (a + root)};
+  return {1 + 1 / (1 + to_right - r * slow), (a - root) / (a + root), to_right, to_left};
 }
 
 // How far off the time of a collapse may be that has been followed to its end.
@@ -98,7 +97,7 @@ template <class T, class Run> void expect_collapse_time(Run run, const Collapse&
 }
 
 // Heavy outer particles collapse at larger restitution: q < 1/2 in all of these.
-TYPED_TEST(EveryScalarCollapse, TimeIsSettledToFullPrecision) {
+TYPED_TEST(EveryScalarRun, TimeIsSettledToFullPrecision) {
   using T = typename TypeParam::Scalar;
   const struct {
     const char* restitution;
@@ -141,9 +140,8 @@ std::uint64_t collisions_down_to(const char* least, double given, const std::vec
   const T restitution = cradle::exactly<T>(given), stop = from_text<T>(least);
   const std::vector<T> masses = numbers<T>(weights);
   SlowLoop loop(Inelastic<T>(restitution, T(0)), Chain(three_particles(masses), T(0)));
-  const Reference eps = reference(restitution), v = rounding<T>(), left = reference(masses[0]),
-                  middle = reference(masses[1]), right = reference(masses[2]),
-                  to_right = (1 + eps) * left / (left + middle), to_left = (1 + eps) * right / (middle + right);
+  const Reference eps = reference(restitution), v = rounding<T>();
+  const Collapse expected = closed_form(restitution, masses);
   Reference invariant(1), before(0), p(1);
   std::uint64_t n = 0;
   for (bool down = false; !down; ++n) {
@@ -155,14 +153,11 @@ std::uint64_t collisions_down_to(const char* least, double given, const std::vec
     EXPECT_LE(abs(reference(step.nearest_gap) * closing - invariant), 3 * n * v * invariant) << "collision " << n;
     EXPECT_LE(abs(closing - p), 6 * n * v * p) << "collision " << n;
     invariant *= eps;
-    const Reference next =
-        n == 0 ? Reference(1 + to_right) : Reference((n % 2 == 0 ? to_right : to_left) * p - eps * before);
-    before = p;
-    p = next;
+    const Reference share = n % 2 == 0 ? expected.to_right : expected.to_left;
+    before = std::exchange(p, n == 0 ? Reference(1 + share) : Reference(share * p - eps * before));
     down = step.nearest_gap < stop;
     if (!down) continue;
     // What is left of the way, g/(p_{n+1} - r lam p_n), is less than twice the next interval, as q < 1/2.
-    const Collapse expected = closed_form(restitution, masses);
     EXPECT_LE(abs(reference(step.time) - expected.time),
               of_rounding<T>(expected) + 2 * reference(step.nearest_gap) / p);
   }
@@ -184,7 +179,7 @@ void expect_followed_down_to(const char* least, double restitution, const std::v
   EXPECT_EQ(run.chain().account().order_lost, 0U);
 }
 
-TYPED_TEST(EveryScalarCollapse, GapsAreFollowedToTheEndOfTheRange) {
+TYPED_TEST(EveryScalarRun, GapsAreFollowedToTheEndOfTheRange) {
   using T = typename TypeParam::Scalar;
   for (const ThreeCollapse& row : three_collapses)
     expect_followed_down_to<GapChain<T>>("1e-290", row.restitution(), {1, 1, 1});

@@ -117,24 +117,24 @@ template <class P> class RandomScenes : public InPrecision<P> {};
 TYPED_TEST_SUITE(RandomScenes, EachKindOfPrecision, PrecisionName);
 
 TYPED_TEST(RandomScenes, InelasticInGaps) {
-  using T = typename TestFixture::Scalar;
+  using T = typename TypeParam::Scalar;
   check_drawn_scenes<GapChain<T, IndividualMasses<T>>>(with_cutoff<T>);
 }
 TYPED_TEST(RandomScenes, InelasticInPositions) {
-  using T = typename TestFixture::Scalar;
+  using T = typename TypeParam::Scalar;
   check_drawn_scenes<PositionChain<T>>(with_cutoff<T>, false);
 }
 TYPED_TEST(RandomScenes, WithAContactTime) {
-  using T = typename TestFixture::Scalar;
+  using T = typename TypeParam::Scalar;
   check_drawn_scenes<GapChain<T, IndividualMasses<T>>>(
       [](const Drawn& d) { return ContactTime<T>(inelastic<T>(d, T(0)), time_of<T>(d.scene.cutoff)); });
 }
 TYPED_TEST(RandomScenes, Wet) {
-  using T = typename TestFixture::Scalar;
+  using T = typename TypeParam::Scalar;
   check_drawn_scenes<ClusterChain<T>>([](const Drawn& d) { return cradle::Wet<T>(T(d.scene.loss) / T(64)); });
 }
 TYPED_TEST(RandomScenes, Merging) {
-  using T = typename TestFixture::Scalar;
+  using T = typename TypeParam::Scalar;
   check_drawn_scenes<ClusterChain<T>>(
       [](const Drawn& d) { return InelasticMerging<T>(inelastic<T>(d, T(0)), cutoff<T>(d)); });
 }
@@ -142,7 +142,7 @@ TYPED_TEST(RandomScenes, Merging) {
 // Found here: three particles collapse down to gaps of 1e-1080, and the times of other collisions, in such units, are
 // beyond the range of the queue's keys. They were taken for never.
 TYPED_TEST(RandomScenes, ACollapseBeyondTheRangeOfDoubleForgetsNoOtherCollision) {
-  using T = typename TestFixture::Scalar;
+  using T = typename TypeParam::Scalar;
   Drawn d{{{1, 1, 17, 1, 1, 1}, {-16384, -14252, -16384, -16384, -15276, -15679}, {64, 7790, 64, 7568, 64, 64}},
           9,
           {0, 0, 64}};

@@ -28,7 +28,7 @@ template <class P> class RandomStates : public InPrecision<P> {};
 TYPED_TEST_SUITE(RandomStates, EveryPrecision, PrecisionName);
 
 TYPED_TEST(RandomStates, AreThoseOfDoubleUpToRounding) {
-  using T = typename TestFixture::Scalar;
+  using T = typename TypeParam::Scalar;
   const auto exact = states<T>();
   const auto rounded = states<double>();
   for (std::size_t k = 0; k < exact.size(); ++k) {

@@ -159,10 +159,9 @@ template <class T> std::vector<Brute::Event> events_of(const Setup& setup) {
   if (setup.shape)
     floor.motion =
         std::make_shared<WallMotion<T>>(*setup.shape, exactly<T>(setup.amplitude), exactly<T>(frequency), T(0));
-  const std::shared_ptr<const Particles<T>> particles = std::make_shared<Walled<T>>(
+  const Scene<T> particles = std::make_shared<Walled<T>>(
       list(numbers<T>(places), numbers<T>(velocities), numbers<T>(masses)), floor, std::nullopt, T(-1));
-  using Chain = GapChain<T, IndividualMasses<T>>;
-  Simulation<T, Inelastic<T>, Chain> run(Inelastic<T>(exactly<T>(setup.restitution)), Chain(particles, T(0)));
+  auto run = mass_run(particles, Inelastic<T>(exactly<T>(setup.restitution)));
   std::vector<Brute::Event> events;
   EXPECT_EQ(run.advance(T(static_cast<int>(until)),
                         [&](const Collision<T>& c) {
@@ -179,7 +178,7 @@ TYPED_TEST_SUITE(SlowRestingIn, EachKindOfPrecision, PrecisionName);
 // The same collisions, at the same times: to what errors of 64 units of rounding of a length of 1, in double, in every
 // collision make of them, which small displacements show.
 TYPED_TEST(SlowRestingIn, ThePileHasTheCollisionsOfBruteForce) {
-  using T = typename TestFixture::Scalar;
+  using T = typename TypeParam::Scalar;
   for (const Setup& setup : setups) {
     SCOPED_TRACE(setup.name);
     Brute brute(setup, Reference(0)), displaced(setup, small);

@@ -15,7 +15,7 @@
 namespace cradle::test::shaken_gaps_in_types_test {
 
 using Reference = bin_float;
-template <class T> Reference exact(const T& x) { return sum_of_doubles<Reference>(x); }
+template <class T> Reference exact(const T& x) { return in_100_digits(x); }
 
 // A gap by numbers of the type N, double or the reference: value and first two derivatives.
 template <class N> struct Curve {

@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <optional>
-#include <vector>
 
 #include "cradle/core/initial/walled.hpp"
 #include "cradle/core/observe/configuration_statistics.hpp"
@@ -20,7 +19,7 @@ TYPED_TEST_SUITE(ShakenIn, EveryPrecision, PrecisionName);
 
 // sin^2 + cos^2 = 1, sin(4 y) from sin(y), and the values at quarters and twelfths of a turn: to 8 epsilon.
 TYPED_TEST(ShakenIn, SineAndCosineHaveTheirDigits) {
-  using T = typename TestFixture::Scalar;
+  using T = typename TypeParam::Scalar;
   const T epsilon = std::numeric_limits<T>::epsilon(), most = T(8) * epsilon;
   const Circle<T> circle;
   for (int k = -40; k < 40; ++k) {
@@ -41,7 +40,7 @@ TYPED_TEST(ShakenIn, SineAndCosineHaveTheirDigits) {
 
 // Whole numbers of turns of any size, as long as the type has digits behind the point.
 TYPED_TEST(ShakenIn, WholeNumbersOfAnySizeAreExact) {
-  using T = typename TestFixture::Scalar;
+  using T = typename TypeParam::Scalar;
   const T epsilon = std::numeric_limits<T>::epsilon();
   T whole(1);
   for (int k = 0; k < 1000 && whole * epsilon < T(1) / T(16); ++k, whole += whole + T(k % 2))
@@ -53,7 +52,7 @@ TYPED_TEST(ShakenIn, WholeNumbersOfAnySizeAreExact) {
 
 // The phases that follow a time are those of the later times, to the bit, after few and after very many turns.
 TYPED_TEST(ShakenIn, PhasesThatFollowATimeAreThoseOfLaterTimes) {
-  using T = typename TestFixture::Scalar;
+  using T = typename TypeParam::Scalar;
   constexpr int motions = std::same_as<T, double> ? 3000 : std::floating_point<T> ? 30 : 2;  // no shorter way in others
   std::uint64_t state = 11;
   const auto draw = [&] { return static_cast<double>((state = splitmix64(state)) >> 11) * 0x1p-53; };
@@ -75,7 +74,7 @@ TYPED_TEST_SUITE(ShakenColumnIn, EachKindOfPrecision, PrecisionName);
 // A particle that approaches the place of the wall as slowly as the type can tell, or is pulled there as weakly,
 // collides about when it arrives there; the search ends at any time since the start and any size of the numbers.
 TYPED_TEST(ShakenColumnIn, TheSearchForACollisionEnds) {
-  using T = typename TestFixture::Scalar;
+  using T = typename TypeParam::Scalar;
   const T epsilon = std::numeric_limits<T>::epsilon();
   T root = T(3) / T(4);  // whose 20th power is epsilon, about
   while (std::pow(to_double(root), 20) > to_double(epsilon) && to_double(root) > 1e-15) root *= T(3) / T(4);
@@ -106,7 +105,7 @@ TYPED_TEST(ShakenColumnIn, TheSearchForACollisionEnds) {
 // the energy to their digits. A collision or a flight rounds a few numbers by u of the largest speed or height: on a
 // floor at rest the energy is off by 64 epsilon of it for each at most.
 TYPED_TEST(ShakenIn, AColumnHasTheSameCollisions) {
-  using T = typename TestFixture::Scalar;
+  using T = typename TypeParam::Scalar;
   constexpr std::optional<Shape> floors[] = {{}, Shape::sawtooth, Shape::parabola, Shape::sine};
   for (const std::optional<Shape>& shape : floors) {
     const auto column = [&]<class S>(std::type_identity<S>) {
@@ -114,13 +113,10 @@ TYPED_TEST(ShakenIn, AColumnHasTheSameCollisions) {
       if (shape) floor.motion = std::make_shared<WallMotion<S>>(*shape, S(1) / S(4), S(3), S(1) / S(2));
       return std::make_shared<Walled<S>>(rmix<S>(8), floor, std::nullopt, S(S(-3) / S(8)));
     };
-    const auto in_gaps = []<class S>(const std::shared_ptr<const Walled<S>>& particles) {
-      return Simulation(Inelastic<S>(S(1)), GapChain<S, IndividualMasses<S>>(particles, S(0)));
-    };
     const std::shared_ptr<const Walled<T>> particles = column(std::type_identity<T>{});
     const T until(6);
-    auto run = in_gaps(particles);
-    auto twin = in_gaps(std::shared_ptr<const Walled<double>>(column(std::type_identity<double>{})));
+    auto run = mass_run<T>(particles, Inelastic<T>(T(1)));
+    auto twin = mass_run<double>(column(std::type_identity<double>{}), Inelastic<double>(1));
     const Sequence found = sequence_to(run, until);
     EXPECT_EQ(found, sequence_to(twin, 6.));
     EXPECT_GT(run.counts().collisions, 20U);
@@ -134,7 +130,7 @@ TYPED_TEST(ShakenIn, AColumnHasTheSameCollisions) {
     EXPECT_LE(magnitude(off), T(64 * static_cast<std::int64_t>(run.counts().collisions)) *
                                   T(std::numeric_limits<T>::epsilon()) * scale);
     if (shape) continue;
-    Simulation places(Inelastic<T>(T(1)), PositionChain<T>(particles, T(0)));
+    auto places = position_run<T>(particles, Inelastic<T>(T(1)));
     EXPECT_EQ(found, sequence_to(places, until));
     const auto d = configuration_at(twin, 6.);
     for (std::size_t j = 0; j < d.x.size(); ++j) EXPECT_NEAR(to_double(c.x[j]), d.x[j], 1e-12);

@@ -46,9 +46,10 @@ template <class T> Reference nearest(const Reference& x) {
     const Reference high = rounded(x, 53);
     return high + rounded(x - high, 53);
   } else if constexpr (requires { std::numeric_limits<T>::digits; }) {
-    if constexpr (std::numeric_limits<T>::digits > 0) return rounded(x, std::numeric_limits<T>::digits);
+    return rounded(x, std::numeric_limits<T>::digits);
+  } else {
+    return rounded(x, MpfrPrecision::bits());
   }
-  return rounded(x, MpfrPrecision::bits());
 }
 
 template <class T> void expect_nearest(const char* literal) {

@@ -34,7 +34,7 @@ struct System {
   double wall_restitution = 1, restitution = 1, cutoff = 0, until = 1;
   Bounce law = Bounce::elastic;
   double acceleration = 0, rest_speed = 0;  // of the wall at which particles may rest: the left one
-  std::optional<Shape> shaken;              // so is the left wall
+  std::optional<Shape> shaken = {};         // so is the left wall
   double amplitude = 0, frequency = 1;
 };
 
@@ -170,7 +170,6 @@ template <class Chain> Made make(const System& s, std::uint64_t most) {
 }
 
 template <class T> using Watching = GapChain<T, WatchedMasses<T>>;
-template <class T> using Plain = GapChain<T, IndividualMasses<T>>;
 
 // The energy is off by what is said, but for the rounding of the sum and the margin of an estimate. (A sum of closing
 // speeds has no digits of particles that are far heavier than others.)
@@ -255,8 +254,7 @@ TEST(SlowUnequalMasses, AreRightOrWarnedOfInWiderTypes) {
 // Closing speeds on a ring keep the rounding of the first ones: cooled to it, the run makes other collisions (31
 // instead of 58, in 220 digits).
 TEST(UnequalMasses, ClosedSystemsThatHaveCooledToTheirRoundingAreWarnedOf) {
-  System s;
-  s.x = {0.125, 0.4375}, s.v = {0.9131, -0.21}, s.m = {1, 1}, s.circumference = 1;
+  System s{.x = {0.125, 0.4375}, .v = {0.9131, -0.21}, .m = {1, 1}, .circumference = 1};
   s.law = Bounce::cutoff, s.restitution = 0.3, s.until = 1e10;
   EXPECT_FALSE(make<GapChain<double>>(s, 1000).warned);
   s.until = 1e30;
@@ -301,19 +299,10 @@ TEST(UnequalMasses, AreWarnedOfBelowTheRangeOfDouble) {
 }
 // Galperin: a light particle between a wall and one of M times its mass that comes in makes floor(pi sqrt(M))
 // collisions.
-System billiard(double mass) {
-  System s;
-  s.x = {1, 2}, s.v = {0, -1}, s.m = {1, mass};
-  s.left_wall = true;
-  s.until = 1000;
-  return s;
-}
+System billiard(double mass) { return {.x = {1, 2}, .v = {0, -1}, .m = {1, mass}, .left_wall = true, .until = 1000}; }
 // The same and its mirror image without the wall: the light ones meet, too.
 System two_billiards(double mass) {
-  System s;
-  s.x = {0, 1, 2, 3}, s.v = {1, 0, 0, -1}, s.m = {mass, 1, 1, mass};
-  s.until = 1000;
-  return s;
+  return {.x = {0, 1, 2, 3}, .v = {1, 0, 0, -1}, .m = {mass, 1, 1, mass}, .until = 1000};
 }
 template <class Chain> void expect_collisions(const System& s, std::uint64_t collisions) {
   const Made made = make<Chain>(s, 1U << 30);
@@ -341,11 +330,10 @@ TEST(UnequalMasses, GuardsAreSilentOnHeavyParticlesThatMeetBetweenNoWalls) {
   expect_collisions<Watching<double_double>>(two_billiards(1e10), 471239);
 }
 TEST(UnequalMasses, GuardsAreSilentOnALightParticleThatHasBeenFast) {
-  System s;
-  s.x = {0, 1, 2.3}, s.v = {1, 0, -1}, s.m = {1e3, 1e-6, 1e3};
+  System s{.x = {0, 1, 2.3}, .v = {1, 0, -1}, .m = {1e3, 1e-6, 1e3}};
   s.law = Bounce::cutoff, s.cutoff = 1e-9, s.until = 4;
   const Made positions = make<PositionChain<double>>(s, 1U << 30), gaps = make<Watching<double>>(s, 1U << 30),
-             plain = make<Plain<double>>(s, 1U << 30);
+             plain = make<GapChain<double, IndividualMasses<double>>>(s, 1U << 30);
   EXPECT_EQ(gaps.collisions, 70248U);
   EXPECT_EQ(positions.collisions, 70248U);
   EXPECT_FALSE(positions.broken || gaps.broken || plain.broken || gaps.warned);

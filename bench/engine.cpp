@@ -12,8 +12,7 @@
 //
 // Times are processor time of the thread (time by the clock for the run on two threads), so that other work on the
 // machine disturbs them less. All engines must count the same collisions; otherwise the program prints an error and
-// ends with status 1. Debian's Google Benchmark prints "library was built as DEBUG": that concerns its own timers, not
-// the measured code.
+// ends with status 1.
 
 #include <concepts>
 #include <functional>
@@ -21,15 +20,13 @@
 #include <string>
 #include <vector>
 
-#include <benchmark/benchmark.h>
-
-#include "common.hpp"
 #include "cradle/core/chains/gap_chain.hpp"
 #include "cradle/core/chains/position_chain.hpp"
 #include "cradle/core/engine/simulation.hpp"
 #include "cradle/core/ensemble/tbb_executor.hpp"
 #include "cradle/core/laws/law.hpp"
 #include "cradle/core/parallel/segments.hpp"
+#include "measured.hpp"
 #include "twins/queues.hpp"
 #include "twins/time_slots.hpp"
 
@@ -77,16 +74,11 @@ template <unsigned threads, unsigned pieces = 0> class InSegments : public Gaps 
 template <class Engine> struct Twin : Engine {
   Twin(const ParticlesPointer& particles) : Engine(*particles, law) {}
 };
-using Scan = Twin<twins::ScanEngine>;
-using IndexedHeap = Twin<twins::IndexedHeapEngine>;
-using TunedHeap = Twin<twins::TunedHeapEngine>;
-using PriorityQueue = Twin<twins::PriorityQueueEngine>;
-using TimeSlots = Twin<twins::TimeSlotsEngine>;
+template <class Queue> using WithQueue = Twin<twins::QueueEngine<Queue>>;
 
 // ---- measurements
 
-// A time at which all engines must have counted the same collisions: the given number or, if it is 0, that of the first
-// engine.
+// For check(): with 0 the collisions are those of the first engine.
 struct Check {
   double time;
   std::uint64_t collisions;
@@ -133,52 +125,45 @@ template <class Engine> void measure(benchmark::State& state, const Case& c, con
     late_seconds += last;
     state.SetIterationTime(seconds);
   }
-  using benchmark::Counter;
-  state.counters["collisions/s"] = Counter(static_cast<double>(collisions), Counter::kIsRate);
-  state.counters["collisions"] = Counter(static_cast<double>(collisions), Counter::kAvgIterations);
+  count(state, collisions);
   state.counters["late/s"] = static_cast<double>(late_collisions) / late_seconds;
 }
 
 template <class Engine> void enter(const std::string& engine, const std::shared_ptr<const Case>& c) {
-  const std::string name = c->name + "/" + engine;
-  benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) { measure<Engine>(state, *c, engine); })
-      ->UseManualTime()
-      ->Unit(benchmark::kMillisecond);
+  enter_timed(c->name + "/" + engine, [=](benchmark::State& state) { measure<Engine>(state, *c, engine); });
 }
 
-void enter_all(const Case& c) {
+void enter_case(const Case& c) {
   const auto shared = std::make_shared<const Case>(c);
   enter<Gaps>("cradle_gaps", shared);
   enter<InSegments<1>>("cradle_segments", shared);
   enter<InSegments<2>>("cradle_two_threads", shared);
   enter<InSegments<1, 16>>("cradle_16_pieces", shared);
   enter<Positions>("cradle_positions", shared);
-  enter<TimeSlots>("time_slots", shared);
-  enter<TunedHeap>("tuned_heap", shared);
-  enter<IndexedHeap>("indexed_heap", shared);
-  enter<PriorityQueue>("priority_queue", shared);
-  if (c.small) enter<Scan>("scan", shared);
+  enter<Twin<twins::TimeSlotsEngine>>("time_slots", shared);
+  enter<WithQueue<twins::TunedHeap>>("tuned_heap", shared);
+  enter<WithQueue<twins::IndexedHeap>>("indexed_heap", shared);
+  enter<WithQueue<twins::PriorityQueue>>("priority_queue", shared);
+  if (c.small) enter<WithQueue<twins::Scan>>("scan", shared);
+}
+
+void enter_all() {
+  // Counts up to 6000 are those of an independent program, the same in double, binary128 and 100 digits. Soon after
+  // 6500, positions in double no longer resolve the cluster, and counts begin to differ.
+  const auto always = [](const ParticlesPointer& particles) { return [=](std::uint64_t) { return particles; }; };
+  enter_case({"shock/8000",
+              always(rows<double>(8000)),
+              {{999.5, 384155}, {1999, 1299216}, {4000, 4685816}, {6000, 16156905}, {6500, 0}}});
+  for (const ParticleIndex n : {100'000, 1'000'000})
+    enter_case({"shock/" + std::to_string(n), always(rows<double>(n)), {{2000, 0}, {4000, 0}}});
+  for (const ParticleIndex n : {3, 10, 30, 100, 300})
+    enter_case({"gas/" + std::to_string(n), [=](std::uint64_t run) { return gas(n, 1, 0., run); }, {{300, 0}}, true});
+  const std::pair<ParticleIndex, double> gases[] = {
+      {1000, 300}, {8000, 300}, {100'000, 40}, {1'000'000, 40}, {10'000'000, 20}};
+  for (const auto& [n, until] : gases)
+    enter_case({"gas/" + std::to_string(n), always(gas(n)), {{until / 2, 0}, {until, 0}}});
 }
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  benchmark::Initialize(&argc, argv);
-  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
-  // Counts up to 6000 are those of an independent program, the same in double, binary128 and 100 digits. Soon after
-  // 6500, positions in double no longer resolve the cluster, and counts begin to differ.
-  const auto always = [](const ParticlesPointer& particles) { return [=](std::uint64_t) { return particles; }; };
-  enter_all({"shock/8000",
-             always(rows<double>(8000)),
-             {{999.5, 384155}, {1999, 1299216}, {4000, 4685816}, {6000, 16156905}, {6500, 0}}});
-  for (const ParticleIndex n : {100'000, 1'000'000})
-    enter_all({"shock/" + std::to_string(n), always(rows<double>(n)), {{2000, 0}, {4000, 0}}});
-  for (const ParticleIndex n : {3, 10, 30, 100, 300})
-    enter_all({"gas/" + std::to_string(n), [=](std::uint64_t run) { return gas(n, 1, 0., run); }, {{300, 0}}, true});
-  const std::pair<ParticleIndex, double> gases[] = {
-      {1000, 300}, {8000, 300}, {100'000, 40}, {1'000'000, 40}, {10'000'000, 20}};
-  for (const auto& [n, until] : gases)
-    enter_all({"gas/" + std::to_string(n), always(gas(n)), {{until / 2, 0}, {until, 0}}});
-  benchmark::RunSpecifiedBenchmarks();
-  benchmark::Shutdown();
-}
+int main(int argc, char** argv) { return bench::measure_all(argc, argv, enter_all); }

@@ -20,8 +20,6 @@
 //
 // Times are by the clock: use an idle machine, and compare ratios of medians.
 
-#include <benchmark/benchmark.h>
-
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -41,19 +39,18 @@
 #include "cradle/core/initial/rows.hpp"
 #include "cradle/tools/ensemble/ensemble.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
+#include "measured.hpp"
 
 namespace {
 
 namespace tools = cradle::tools;
 
 void enter(const std::string& name, int replicas, const std::function<void()>& all) {
-  benchmark::RegisterBenchmark(name.c_str(),
-                               [=](benchmark::State& state) {
-                                 for (auto iteration : state) all();
-                                 state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations()) * replicas);
-                               })
-      ->UseRealTime()
-      ->Unit(benchmark::kMillisecond);
+  const auto measure = [=](benchmark::State& state) {
+    for (auto iteration : state) all();
+    state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations()) * replicas);
+  };
+  benchmark::RegisterBenchmark(name.c_str(), measure)->UseRealTime()->Unit(benchmark::kMillisecond);
 }
 
 // ---- the program
@@ -179,13 +176,12 @@ double engine_alone(int n, int replica, std::uint64_t& collisions) {
 void enter_small(int n) {
   const int replicas = 300'000 / (n + 10);
   const auto enter_each = [=](const std::string& name, const std::function<void()>& all) {
-    benchmark::RegisterBenchmark(("small/" + std::to_string(n) + "/" + name).c_str(),
-                                 [=](benchmark::State& state) {
-                                   for (auto iteration : state) all();
-                                   state.counters["each"] =
-                                       benchmark::Counter(replicas, benchmark::Counter::kIsIterationInvariantRate |
-                                                                        benchmark::Counter::kInvert);
-                                 })
+    const auto measure = [=](benchmark::State& state) {
+      using benchmark::Counter;
+      for (auto iteration : state) all();
+      state.counters["each"] = Counter(replicas, Counter::kIsIterationInvariantRate | Counter::kInvert);
+    };
+    benchmark::RegisterBenchmark(("small/" + std::to_string(n) + "/" + name).c_str(), measure)
         ->MeasureProcessCPUTime()
         ->Unit(benchmark::kMillisecond);
   };
@@ -209,11 +205,7 @@ void enter_small(int n) {
   enter_each("ensemble", [=] { run_ensemble(scene, replicas, 1); });
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  benchmark::Initialize(&argc, argv);
-  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+void enter_all() {
   const tools::Scene wet = tools::parse_scene(R"(
     law = { type = "wet", loss = 0.05 }
     initial = { type = "rows", particles = 1e4, speed = 0.5, perturbation = 0.05 }
@@ -233,6 +225,8 @@ int main(int argc, char** argv) {
                               cradle::GapChain<double>(rows(8000, replica), 0.0));
   });
   for (const int n : {3, 10, 30, 100, 1000}) enter_small(n);
-  benchmark::RunSpecifiedBenchmarks();
-  benchmark::Shutdown();
 }
+
+}  // namespace
+
+int main(int argc, char** argv) { return bench::measure_all(argc, argv, enter_all); }

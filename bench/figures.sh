@@ -6,8 +6,7 @@
 set -euo pipefail
 folder=${1:-out}
 shift || true
-cradle=${CRADLE:-build/release/tools/cradle}
-cradle=$(realpath "$cradle")
+cradle=$(realpath "${CRADLE:-build/release/tools/cradle}")
 mkdir -p "$folder"
 cd "$folder"
 command_of() {

@@ -10,20 +10,17 @@
 //          published ones.
 // cooling  N particles on a ring, Gaussian velocities of variance 1, to t = 1000.
 //
-// Times are processor time of the thread, with two threads time by the clock. Debian's Google Benchmark prints "library
-// was built as DEBUG": that concerns its own timers.
+// Times are processor time of the thread, with two threads time by the clock.
 
 #include <memory>
 #include <string>
 
-#include <benchmark/benchmark.h>
-
-#include "common.hpp"
 #include "cradle/core/chains/cluster_chain.hpp"
 #include "cradle/core/engine/simulation.hpp"
 #include "cradle/core/ensemble/tbb_executor.hpp"
 #include "cradle/core/initial/ring.hpp"
 #include "cradle/core/parallel/segments.hpp"
+#include "measured.hpp"
 #include "twins/merging.hpp"
 
 namespace {
@@ -68,31 +65,20 @@ constexpr Measured plain{"cradle", run_cradle<0>}, in_segments{"cradle_segments"
 // The time includes the set-up: it is part of a run's cost, and conventional engines set up every particle of the rows.
 void enter(const std::string& of, const Measured& measured, const ParticlesPointer& particles, double loss,
            double until, std::uint64_t published = 0) {
-  benchmark::RegisterBenchmark((of + "/" + measured.engine).c_str(),
-                               [=](benchmark::State& state) {
-                                 std::uint64_t collisions = 0;
-                                 for (auto iteration : state) {
-                                   const double start = seconds_now(measured.clock);
-                                   const std::uint64_t made = measured.run(particles, loss, until);
-                                   state.SetIterationTime(seconds_now(measured.clock) - start);
-                                   check(of, measured.engine, until, made, published);
-                                   collisions += made;
-                                 }
-                                 using benchmark::Counter;
-                                 state.counters["collisions"] =
-                                     Counter(static_cast<double>(collisions), Counter::kAvgIterations);
-                                 state.counters["collisions/s"] =
-                                     Counter(static_cast<double>(collisions), Counter::kIsRate);
-                               })
-      ->UseManualTime()
-      ->Unit(benchmark::kMillisecond);
+  enter_timed(of + "/" + measured.engine, [=](benchmark::State& state) {
+    std::uint64_t collisions = 0;
+    for (auto iteration : state) {
+      const double start = seconds_now(measured.clock);
+      const std::uint64_t made = measured.run(particles, loss, until);
+      state.SetIterationTime(seconds_now(measured.clock) - start);
+      check(of, measured.engine, until, made, published);
+      collisions += made;
+    }
+    count(state, collisions);
+  });
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  benchmark::Initialize(&argc, argv);
-  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+void enter_all() {
   for (const Measured& engine : {plain, in_segments, on_two_threads, conventional})
     enter("wet/fig6", engine, rows<double>(50'000), 1e-4, 12000, 12153997);
   for (const Measured& engine : {plain, in_segments})
@@ -107,6 +93,8 @@ int main(int argc, char** argv) {
         enter(of, engine, particles, loss, 1000);
     }
   }
-  benchmark::RunSpecifiedBenchmarks();
-  benchmark::Shutdown();
 }
+
+}  // namespace
+
+int main(int argc, char** argv) { return bench::measure_all(argc, argv, enter_all); }

@@ -11,9 +11,7 @@ import json
 import statistics
 import sys
 
-import matplotlib
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402
+import matplotlib.pyplot as plt
 
 ENGINES = {"cradle_two_threads": ("Cradle, two threads (by the clock)", "#D55E00", "o-"),
            "cradle_segments": ("Cradle", "#0072B2", "o-"),
@@ -40,6 +38,7 @@ def read(path):
 
 
 def main(dry, wet, out):
+    plt.switch_backend("Agg")
     figure, panels = plt.subplots(1, 2, figsize=(10.5, 5.4), layout="constrained", sharey=True)
     for axes, path, title in zip(panels, (dry, wet), ("dry gas on a line", "wet particles that cool on a ring")):
         found = read(path)

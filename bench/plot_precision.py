@@ -9,11 +9,9 @@ Errors run from 1 (no digit is right) to 1e-200 on an axis that is linear in the
 import csv
 import sys
 
-import matplotlib
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402
-import numpy as np  # noqa: E402
-from matplotlib.lines import Line2D  # noqa: E402
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.lines import Line2D
 
 COLOURS = {"double": "#0072B2", "long double": "#56B4E9", "double-double": "#D55E00", "float128": "#E69F00",
            "mpfr 20": "#B9DEB0", "mpfr 34": "#7CC47F", "mpfr 50": "#3DA35D", "mpfr 100": "#1B7A3D",
@@ -67,6 +65,7 @@ def scatter(axes, points, unit, shown):
 
 def main(source, target):
     found = read(source)
+    plt.switch_backend("Agg")
     plt.rcParams.update({"font.size": 10, "axes.titlesize": 10.5, "figure.dpi": 100})
     figure, ((a, b), (c, d)) = plt.subplots(2, 2, figsize=(12.4, 10.6))
 

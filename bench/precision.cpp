@@ -12,8 +12,7 @@
 // reversal   elastic gas forwards and back: rounding errors alone
 //
 // Errors are relative and at most 1. The CSV has a line per number: scene, representation, type, quantity, t, value.
-// Times are processor time of the thread. Debian's Google Benchmark prints "library was built as DEBUG": that concerns
-// its own timers.
+// Times are processor time of the thread.
 
 #include <algorithm>
 #include <cmath>
@@ -22,12 +21,9 @@
 #include <map>
 #include <stdexcept>
 #include <string_view>
-#include <tuple>
 #include <type_traits>
-#include <utility>
 
-#include <benchmark/benchmark.h>
-
+#include "measured.hpp"
 #include "precision/collapse.hpp"
 #include "precision/engines.hpp"
 #include "precision/reversal.hpp"
@@ -46,13 +42,13 @@ const ShockScene speed{"speed", 8000, "0.999", {4000}, 4'685'816};
 
 class Report {
  public:
-  Report(benchmark::State& state, std::string scene, std::string representation, std::string type)
-      : state_(state), scene_(std::move(scene)), representation_(std::move(representation)), type_(std::move(type)) {}
+  Report(benchmark::State& state, const std::string& scene, const std::string& representation, const std::string& type)
+      : state_(state), of_(scene + ',' + representation + ',' + type + ',') {}
 
   void add(const std::string& quantity, double value, const std::string& time = "") {
     state_.counters[counter(quantity) + (time.empty() ? "" : "@" + time)] =
         counter(quantity) == quantity ? value : -std::log10(value);
-    rows()[{scene_, representation_, type_, quantity, time}] = value;
+    rows()[of_ + quantity + ',' + time] = value;
   }
   void cost(double seconds, std::uint64_t collisions) {
     state_.SetIterationTime(seconds);
@@ -64,19 +60,14 @@ class Report {
   static void write(const std::string& path) {
     std::ofstream file(path);
     file << "scene,representation,type,quantity,t,value\n";
-    for (const auto& [key, value] : rows()) {
-      const auto& [scene, representation, type, quantity, time] = key;
-      file << scene << ',' << representation << ',' << type << ',' << quantity << ',' << time << ','
-           << cradle::to_text(value) << '\n';
-    }
+    for (const auto& [key, value] : rows()) file << key << ',' << cradle::to_text(value) << '\n';
     if (!file.flush())
       throw std::runtime_error(path + " cannot be written: give a path in a folder that you may write to");
   }
 
  private:
-  using Key = std::tuple<std::string, std::string, std::string, std::string, std::string>;
-  static std::map<Key, double>& rows() {
-    static std::map<Key, double> rows;
+  static std::map<std::string, double>& rows() {
+    static std::map<std::string, double> rows;
     return rows;
   }
 
@@ -87,7 +78,7 @@ class Report {
   }
 
   benchmark::State& state_;
-  std::string scene_, representation_, type_;
+  std::string of_;
 };
 
 Report report(benchmark::State& state, const std::string& scene, const Engine& engine) {
@@ -97,24 +88,20 @@ Report report(benchmark::State& state, const std::string& scene, const Engine& e
 // ---- one function per measurement
 
 void measure_collapse(benchmark::State& state, const Engine& engine, const CollapseScene& scene) {
-  for (auto iteration : state) {
-    const CollapseOutcome outcome = measure(engine, scene);
-    Report found = report(state, scene.name, engine);
-    found.cost(outcome.seconds, outcome.collisions);
-    found.add("time_error", outcome.extrapolated);
-    found.add("claimed_time_error", outcome.claimed);
-    found.add("summed_time_error", outcome.summed);
-    found.add("collisions_right", static_cast<double>(outcome.collisions_right));
-  }
+  const CollapseOutcome outcome = measure(engine, scene);
+  Report found = report(state, scene.name, engine);
+  found.cost(outcome.seconds, outcome.collisions);
+  found.add("time_error", outcome.extrapolated);
+  found.add("claimed_time_error", outcome.claimed);
+  found.add("summed_time_error", outcome.summed);
+  found.add("collisions_right", static_cast<double>(outcome.collisions_right));
 }
 
 void measure_reversal(benchmark::State& state, const Engine& engine) {
-  for (auto iteration : state) {
-    const ReversalOutcome outcome = reverse(engine);
-    Report found = report(state, "reversal", engine);
-    found.cost(outcome.seconds, outcome.collisions);
-    found.add("position_error", outcome.error);
-  }
+  const ReversalOutcome outcome = reverse(engine);
+  Report found = report(state, "reversal", engine);
+  found.cost(outcome.seconds, outcome.collisions);
+  found.add("position_error", outcome.error);
 }
 
 void add_errors(Report& found, const ShockScene& scene, const ShockRun& run, const ShockRun& exact) {
@@ -152,37 +139,31 @@ struct Reference {
 
 void measure_shock(benchmark::State& state, const Engine& engine) {
   static const Reference exact(shock, 230);
-  for (auto iteration : state) {
-    ShockRun plain = run(engine, shock);
-    for (int trial = 0; trial < 2 && plain.seconds < 1; ++trial)
-      plain.seconds = std::min(plain.seconds, run(engine, shock).seconds);
-    Report found = report(state, shock.name, engine);
-    found.cost(plain.seconds, plain.states.back().collisions);
-    add_errors(found, shock, plain, exact.run);
-    add_order(found, shock, run(engine, shock, exact.sampling), exact.run);
-  }
+  ShockRun plain = run(engine, shock);
+  for (int trial = 0; trial < 2 && plain.seconds < 1; ++trial)
+    plain.seconds = std::min(plain.seconds, run(engine, shock).seconds);
+  Report found = report(state, shock.name, engine);
+  found.cost(plain.seconds, plain.states.back().collisions);
+  add_errors(found, shock, plain, exact.run);
+  add_order(found, shock, run(engine, shock, exact.sampling), exact.run);
 }
 
 void measure_order(benchmark::State& state, const Engine& engine) {
   static const Reference exact(order, 100);
-  for (auto iteration : state) {
-    const ShockRun traced = run(engine, order, exact.sampling);
-    Report found = report(state, order.name, engine);
-    state.SetIterationTime(traced.seconds);
-    found.add("collisions", static_cast<double>(traced.states.back().collisions));
-    add_errors(found, order, traced, exact.run);
-    add_order(found, order, traced, exact.run);
-  }
+  const ShockRun traced = run(engine, order, exact.sampling);
+  Report found = report(state, order.name, engine);
+  state.SetIterationTime(traced.seconds);
+  found.add("collisions", static_cast<double>(traced.states.back().collisions));
+  add_errors(found, order, traced, exact.run);
+  add_order(found, order, traced, exact.run);
 }
 
 template <class Once> void measure_speed(benchmark::State& state, Report found, Once once) {
-  for (auto iteration : state) {
-    std::uint64_t collisions = 0;
-    double best = once(collisions);
-    for (int trial = 0; trial < 4 && best < 1; ++trial) best = std::min(best, once(collisions));
-    found.cost(best, collisions);
-    if (collisions != speed.collisions) state.SkipWithError("counts other collisions than it must: times mean nothing");
-  }
+  std::uint64_t collisions = 0;
+  double best = once(collisions);
+  for (int trial = 0; trial < 4 && best < 1; ++trial) best = std::min(best, once(collisions));
+  found.cost(best, collisions);
+  if (collisions != speed.collisions) state.SkipWithError("counts other collisions than it must: times mean nothing");
 }
 
 double time_engine(const Engine& engine, const ShockScene& scene, std::uint64_t& collisions) {
@@ -195,8 +176,8 @@ double time_engine(const Engine& engine, const ShockScene& scene, std::uint64_t&
   });
 }
 
-template <class Twin> double time_twin(const ShockScene& scene, std::uint64_t& collisions) {
-  Twin twin(*bench::rows<double>(scene.particles), {0.999, 1e-5});
+template <class Queue> double time_twin(const ShockScene& scene, std::uint64_t& collisions) {
+  twins::QueueEngine<Queue> twin(*bench::rows<double>(scene.particles), {0.999, 1e-5});
   const double start = bench::seconds_now();
   twin.advance(scene.times.back());
   collisions = twin.collisions();
@@ -205,14 +186,17 @@ template <class Twin> double time_twin(const ShockScene& scene, std::uint64_t& c
 
 // ---- list of measurements
 
-template <class Measure> void enter(const std::string& name, Measure measure) {
-  benchmark::RegisterBenchmark(name.c_str(), measure)->Iterations(1)->UseManualTime()->Unit(benchmark::kMillisecond);
+template <class Measure> void enter(const std::string& name, const Measure& measure) {
+  const auto once = [=](benchmark::State& state) {
+    for (auto iteration : state) measure(state);
+  };
+  bench::enter_timed(name, once)->Iterations(1);
 }
 
-template <class Twin> void enter_twin(const std::string& name) {
+template <class Queue> void enter_twin(const std::string& name) {
   enter("speed/conventional/" + name, [=](benchmark::State& state) {
     measure_speed(state, Report(state, speed.name, "conventional", name),
-                  [](std::uint64_t& collisions) { return time_twin<Twin>(speed, collisions); });
+                  [](std::uint64_t& collisions) { return time_twin<Queue>(speed, collisions); });
   });
 }
 
@@ -226,8 +210,8 @@ void enter_all() {
             [=](benchmark::State& state) { measure_collapse(state, engine, scene); });
   for (const Engine& engine : engines)
     enter("reversal/" + engine.name(), [=](benchmark::State& state) { measure_reversal(state, engine); });
-  enter_twin<twins::TunedHeapEngine>("tuned_heap");
-  enter_twin<twins::IndexedHeapEngine>("indexed_heap");
+  enter_twin<twins::TunedHeap>("tuned_heap");
+  enter_twin<twins::IndexedHeap>("indexed_heap");
   for (const Engine& engine : engines)
     enter("speed/" + engine.name(), [=](benchmark::State& state) {
       measure_speed(state, report(state, speed.name, engine),

@@ -10,8 +10,7 @@
 // column   1000 beads under gravity on a floor at rest, on one that moves like a sawtooth or a sine, and 1000 between
 //          walls at rest; in segments and steps on one thread, and in the plain loop.
 //
-// Times are processor time of the thread. Debian's Google Benchmark prints "library was built as DEBUG": that concerns
-// its own timers.
+// Times are processor time of the thread.
 
 #include <cmath>
 #include <memory>
@@ -21,14 +20,12 @@
 #include <utility>
 #include <vector>
 
-#include <benchmark/benchmark.h>
-
-#include "common.hpp"
 #include "cradle/core/chains/gap_chain.hpp"
 #include "cradle/core/engine/simulation.hpp"
 #include "cradle/core/initial/walled.hpp"
 #include "cradle/core/laws/law.hpp"
 #include "cradle/core/parallel/segments.hpp"
+#include "measured.hpp"
 
 namespace {
 
@@ -86,7 +83,7 @@ struct Ball {
 };
 
 template <class Run> void enter_ball(const std::string& name, double until, bool checked, const Run& run) {
-  benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) {
+  enter_timed(name, [=](benchmark::State& state) {
     std::uint64_t bounces = 0;
     for (auto iteration : state) {
       const double start = seconds_now();
@@ -98,7 +95,7 @@ template <class Run> void enter_ball(const std::string& name, double until, bool
     using benchmark::Counter;
     state.counters["bounces"] = Counter(static_cast<double>(bounces), Counter::kAvgIterations);
     state.counters["seconds/bounce"] = Counter(static_cast<double>(bounces), Counter::kIsRate | Counter::kInvert);
-  })->UseManualTime();
+  });
 }
 
 // ---- a column
@@ -107,7 +104,7 @@ void enter_column(const std::string& name, Wall floor, std::optional<Wall> ceili
   const ParticlesPointer particles =
       std::make_shared<cradle::Walled<double>>(gas(1000), std::move(floor), std::move(ceiling), acceleration);
   for (const bool in_segments : {false, true})
-    benchmark::RegisterBenchmark((name + (in_segments ? "/in_steps" : "/plain")).c_str(), [=](benchmark::State& state) {
+    enter_timed(name + (in_segments ? "/in_steps" : "/plain"), [=](benchmark::State& state) {
       std::uint64_t collisions = 0;
       for (auto iteration : state) {
         cradle::Simulation run(Law(0.9999, 1e-5), Chain(particles, 0.));
@@ -118,15 +115,11 @@ void enter_column(const std::string& name, Wall floor, std::optional<Wall> ceili
         check(name, in_segments ? "steps" : "plain", 4000, run.counts().collisions, 0);
         collisions += run.counts().collisions;
       }
-      state.counters["collisions/s"] = benchmark::Counter(static_cast<double>(collisions), benchmark::Counter::kIsRate);
-    })->UseManualTime();
+      count(state, collisions);
+    });
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  benchmark::Initialize(&argc, argv);
-  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+void enter_all() {
   const std::pair<const char*, Ball> balls[] = {{"ball/periodic", {0.5, 1.2, 1}}, {"ball/chaotic", {0.9, 0.5, 5}}};
   for (const auto& [name, ball] : balls) {
     const bool periodic = ball.restitution == 0.5;
@@ -139,6 +132,8 @@ int main(int argc, char** argv) {
   enter_column("column", floor, std::nullopt, -0.002);
   enter_column("column/sawtooth", shaken(floor, cradle::Shape::sawtooth, 0.01, 100), std::nullopt, -0.002);
   enter_column("column/sine", shaken(floor, cradle::Shape::sine, 0.3, 1), std::nullopt, -0.002);
-  benchmark::RunSpecifiedBenchmarks();
-  benchmark::Shutdown();
 }
+
+}  // namespace
+
+int main(int argc, char** argv) { return bench::measure_all(argc, argv, enter_all); }

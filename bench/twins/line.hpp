@@ -19,6 +19,16 @@ struct Law {
   double cutoff;  // closing speed below which collisions are elastic
 };
 
+// That flies freely: x is the position at `time`.
+struct Flying {
+  double x, v, time;
+  double at(double t) const { return x + v * (t - time); }
+  void advance(double t) {
+    x = at(t);
+    time = t;
+  }
+};
+
 class Line {
  public:
   Line(const cradle::Particles<double>& particles, Law law) : law_(law) {
@@ -31,7 +41,7 @@ class Line {
 
   // Time of the next collision of particles i and i + 1, predicted at the time `now`.
   double due(std::size_t i, double now) const {
-    const Particle &left = particles_[i], &right = particles_[i + 1];
+    const Flying &left = particles_[i], &right = particles_[i + 1];
     const double closing = left.v - right.v;
     if (!(closing > 0)) return never;
     return now + std::max(right.at(now) - left.at(now), 0.0) / closing;  // rounding can make the gap negative
@@ -45,7 +55,7 @@ class Line {
 
   // Collision of particles i and i + 1.
   void collide(std::size_t i, double time) {
-    Particle &left = particles_[i], &right = particles_[i + 1];
+    Flying &left = particles_[i], &right = particles_[i + 1];
     left.advance(time);
     right.advance(time);
     right.x = left.x;
@@ -56,17 +66,8 @@ class Line {
   }
 
  private:
-  struct Particle {
-    double x, v, time;  // x is the position at `time`
-    double at(double t) const { return x + v * (t - time); }
-    void advance(double t) {
-      x = at(t);
-      time = t;
-    }
-  };
-
   Law law_;
-  std::vector<Particle> particles_;
+  std::vector<Flying> particles_;
 };
 
 }  // namespace twins

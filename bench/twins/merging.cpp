@@ -7,15 +7,13 @@
 
 namespace twins {
 
-namespace {
 constexpr auto none = std::numeric_limits<std::uint32_t>::max();
-}
 
 MergingEngine::MergingEngine(const cradle::Particles<double>& particles, double loss)
     : loss_(loss), circumference_(particles.circumference()), heap_({}) {
   const auto count = static_cast<std::uint32_t>(particles.count());
   for (std::uint32_t b = 0; b < count; ++b)
-    particles_.push_back({particles.position(b), particles.velocity(b), particles.mass(b), 0, b - 1, b + 1});
+    particles_.push_back({{particles.position(b), particles.velocity(b), 0}, particles.mass(b), b - 1, b + 1});
   particles_.front().left = circumference_ > 0 ? count - 1 : none;
   particles_.back().right = circumference_ > 0 ? 0 : none;
   std::vector<double> times;
@@ -30,13 +28,7 @@ double MergingEngine::due(std::uint32_t i, double now) const {
   const double closing = left.v - right.v;
   if (!(closing > 0)) return never;
   const double around = left.right < i ? circumference_ : 0;
-  const double gap = right.x + right.v * (now - right.time) + around - (left.x + left.v * (now - left.time));
-  return now + std::max(gap, 0.0) / closing;
-}
-
-void MergingEngine::fly(Particle& particle, double time) const {
-  particle.x += particle.v * (time - particle.time);
-  particle.time = time;
+  return now + std::max(right.at(now) + around - left.at(now), 0.0) / closing;
 }
 
 void MergingEngine::advance(double until) {
@@ -46,8 +38,8 @@ void MergingEngine::advance(double until) {
     Particle& left = particles_[i];
     const std::uint32_t j = left.right;
     Particle& right = particles_[j];
-    fly(left, time);
-    fly(right, time);
+    left.advance(time);
+    right.advance(time);
     ++collisions_;
     const double closing = left.v - right.v, reduced = left.m * right.m / (left.m + right.m);
     const double centre = (left.m * left.v + right.m * right.v) / (left.m + right.m);

@@ -18,13 +18,12 @@ class MergingEngine {
   std::uint64_t collisions() const { return collisions_; }
 
  private:
-  struct Particle {
-    double x, v, m, time;  // x is the position at `time`
+  struct Particle : Flying {
+    double m;
     std::uint32_t left, right;
   };
 
   double due(std::uint32_t i, double now) const;
-  void fly(Particle& particle, double time) const;
 
   double loss_, circumference_;
   std::vector<Particle> particles_;

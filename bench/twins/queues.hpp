@@ -167,12 +167,5 @@ template <class Queue> class QueueEngine {
   Queue queue_;
   std::uint64_t collisions_ = 0;
 };
-using ScanEngine = QueueEngine<Scan>;
-using IndexedHeapEngine = QueueEngine<IndexedHeap>;
-using TunedHeapEngine = QueueEngine<TunedHeap>;
-using PriorityQueueEngine = QueueEngine<PriorityQueue>;
-extern template class QueueEngine<IndexedHeap>;
-extern template class QueueEngine<TunedHeap>;
-extern template class QueueEngine<PriorityQueue>;
 
 }  // namespace twins

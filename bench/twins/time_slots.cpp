@@ -6,11 +6,7 @@
 
 namespace twins {
 
-namespace {
-
 constexpr double collisions_per_slot = 2;
-
-}  // namespace
 
 TimeSlotsEngine::TimeSlotsEngine(const cradle::Particles<double>& particles, Law law) : law_(law) {
   const cradle::ParticleIndex count = particles.count() - 1;

@@ -9,21 +9,12 @@
 #include "cradle/tools/result/writer.hpp"
 #include "cradle/tools/support/bytes.hpp"
 
-namespace {
-
-using namespace cradle::tools;
-
-std::string file_of(const std::string& bytes) {
-  auto [attributes, groups] = from_bytes<std::pair<std::vector<Attribute>, std::vector<Group>>>(bytes);
-  return file_image({std::move(attributes), std::move(groups)});
-}
-
-}  // namespace
-
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace cradle::tools;
   static const std::string path = "/tmp/cradle-fuzz-" + std::to_string(::getpid()) + ".h5";
   return cradle::fuzz::refused_or_read(data, size, [](const std::string& bytes) {
-    std::ofstream(path, std::ios::binary) << file_of(bytes);
+    auto [attributes, groups] = from_bytes<std::pair<std::vector<Attribute>, std::vector<Group>>>(bytes);
+    std::ofstream(path, std::ios::binary) << file_image({std::move(attributes), std::move(groups)});
     read_result(path);
     read_result(path, Reading::ends);
   });

@@ -1,6 +1,7 @@
 // Balls enclose: the result of every operation on random balls contains the exact results for the numbers in them,
 // above all for their ends; comparisons are certain or open; decimals and doubles are rounded outwards.
 #include <array>
+#include <concepts>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -14,11 +15,11 @@
 #include "cradle/precision/ball.hpp"
 #include "cradle/precision/ball_text.hpp"
 #include "cradle/tests/core/rational.hpp"
+#include "cradle/tests/precision/every_scalar.hpp"
 
 namespace cradle::test::ball_test {
 
-Rational exact(double x) { return Rational(x); }
-Rational exact(long double x) { return Rational(x); }
+template <std::floating_point T> Rational exact(T x) { return Rational(x); }
 Rational exact(const double_double& x) { return exactly(x.high()) + exactly(x.low()); }
 
 #ifdef CRADLE_WITH_MPFR
@@ -27,21 +28,9 @@ template <int Limbs> Rational exact(const Mpfr<Limbs>& x) {
 }
 #endif
 
-template <class M> class Balls : public testing::Test {
- protected:
-  static void SetUpTestSuite() {
-#ifdef CRADLE_WITH_MPFR
-    MpfrPrecision::set_bits(MpfrPrecision::bits_for(50));
-#endif
-  }
-};
-using Midpoints = testing::Types<double_double
-#ifdef CRADLE_WITH_MPFR
-                                 ,
-                                 Mpfr<4>
-#endif
-                                 >;
-TYPED_TEST_SUITE(Balls, Midpoints);
+template <class P> using Balls = InPrecision<P>;
+using Midpoints = Joined<testing::Types<Precision<double_double>>, Mpfr50>::Types;
+TYPED_TEST_SUITE(Balls, Midpoints, PrecisionName);
 
 template <class M> struct Draws {
   using B = Ball<M>;
@@ -73,8 +62,8 @@ template <class M> void expect_holds(const Ball<M>& x, const Rational& number) {
 }
 
 TYPED_TEST(Balls, HoldWhatTheOperationsGive) {
-  using B = Ball<TypeParam>;
-  Draws<TypeParam> draws;
+  using B = Ball<typename TypeParam::Scalar>;
+  Draws<typename TypeParam::Scalar> draws;
   std::size_t useful = 0;
   for (int k = 0; k < 1500; ++k) {
     const B x = draws.ball(), y = draws.ball();
@@ -103,12 +92,13 @@ template <int Limbs> Mpfr<Limbs> scaled(const Mpfr<Limbs>& x, int exponent) { re
 
 // At the lower end of the range, where terms underflow and are divided by numbers as small.
 TYPED_TEST(Balls, HoldQuotientsAndSumsOfTheLeastNumbers) {
-  using B = Ball<TypeParam>;
-  const int least = std::is_same_v<TypeParam, double_double> ? -1018 : -16390;
-  Draws<TypeParam> draws;
+  using M = typename TypeParam::Scalar;
+  using B = Ball<M>;
+  const int least = std::same_as<M, double_double> ? -1018 : -16390;
+  Draws<M> draws;
   for (int k = 0; k < 2000; ++k) {
     const auto exponent = [&] { return least + 41 + static_cast<int>(draws.bits() % 60); };
-    const TypeParam number = draws.number();
+    const M number = draws.number();
     const int e = exponent();
     const B x(scaled(number, e), 0), y(scaled(draws.number(), exponent()), 0), quotient = x / y;
     if (is_finite(quotient)) expect_holds(quotient, Rational(exact(x.middle()) / exact(y.middle())));
@@ -123,8 +113,8 @@ TYPED_TEST(Balls, HoldQuotientsAndSumsOfTheLeastNumbers) {
 }
 
 TYPED_TEST(Balls, HoldRoots) {
-  using B = Ball<TypeParam>;
-  Draws<TypeParam> draws;
+  using B = Ball<typename TypeParam::Scalar>;
+  Draws<typename TypeParam::Scalar> draws;
   for (int k = 0; k < 3000; ++k) {
     const B x = draws.ball();
     const B root = sqrt(x);
@@ -142,11 +132,12 @@ TYPED_TEST(Balls, HoldRoots) {
 }
 
 TYPED_TEST(Balls, CombinationsHoldAndDoNotGrow) {
-  using B = Ball<TypeParam>;
-  Draws<TypeParam> draws;
+  using M = typename TypeParam::Scalar;
+  using B = Ball<M>;
+  Draws<M> draws;
   for (int k = 0; k < 500; ++k) {
     const B x = draws.ball(), y = draws.ball();
-    const B c(TypeParam(draws.uniform()), static_cast<typename B::Radius>(k % 2 == 0 ? 0 : 0x1p-70));
+    const B c(M(draws.uniform()), static_cast<typename B::Radius>(k % 2 == 0 ? 0 : 0x1p-70));
     const typename B::Share share(c);
     const auto [l, r] = B::combined(x, y, x - y, share, k % 4 < 2 ? share : typename B::Share(c));
     for (const Rational& a : draws.numbers(x))
@@ -165,8 +156,8 @@ TYPED_TEST(Balls, CombinationsHoldAndDoNotGrow) {
 
 // x - c(x - y) (x - y) with c(w) = w/8 and a derivative w/4 of c(w) w.
 TYPED_TEST(Balls, SharesThatDependOnADifferenceEnclose) {
-  using B = Ball<TypeParam>;
-  Draws<TypeParam> draws;
+  using B = Ball<typename TypeParam::Scalar>;
+  Draws<typename TypeParam::Scalar> draws;
   const B eighth = B(1) / B(8);
   for (int k = 0; k < 500; ++k) {
     const B x = draws.ball(), y = draws.ball(), apart = x - y;
@@ -181,13 +172,14 @@ TYPED_TEST(Balls, SharesThatDependOnADifferenceEnclose) {
 }
 
 TYPED_TEST(Balls, ComparisonsAreCertainOrOpen) {
-  using B = Ball<TypeParam>;
-  Draws<TypeParam> draws;
+  using M = typename TypeParam::Scalar;
+  using B = Ball<M>;
+  Draws<M> draws;
   std::array<int, 3> counted{};
   for (int k = 0; k < 5000; ++k) {
     const B x = draws.ball();
     // Near it, so that all cases occur.
-    const B y(x.middle() + TypeParam(to_double(x.middle()) * (draws.uniform() - 0.5) * std::ldexp(1., -(k % 60) * 2)),
+    const B y(x.middle() + M(to_double(x.middle()) * (draws.uniform() - 0.5) * std::ldexp(1., -(k % 60) * 2)),
               x.radius());
     const bool less = exact(x.middle()) + exact(x.radius()) < exact(y.middle()) - exact(y.radius());
     const bool greater = exact(x.middle()) - exact(x.radius()) > exact(y.middle()) + exact(y.radius());
@@ -202,8 +194,8 @@ TYPED_TEST(Balls, ComparisonsAreCertainOrOpen) {
 }
 
 TYPED_TEST(Balls, DecimalsAndDoublesAreRoundedOutwards) {
-  using B = Ball<TypeParam>;
-  Draws<TypeParam> draws;
+  using B = Ball<typename TypeParam::Scalar>;
+  Draws<typename TypeParam::Scalar> draws;
   for (int k = 0; k < 500; ++k) {
     const B x = draws.ball();
     const auto text = in_decimals(x);
@@ -223,18 +215,19 @@ TYPED_TEST(Balls, DecimalsAndDoublesAreRoundedOutwards) {
 
 // A particle at rest has the velocity 0, exactly: to find doubles on either side of it must not take for ever.
 TYPED_TEST(Balls, DoublesAreFoundAroundZero) {
-  using N = Ball<TypeParam>;
-  for (const N& x : {N(0), N(TypeParam(0), 5e-324), N(TypeParam(0), 1e-300), N(TypeParam(0), 1e-30)}) {
+  using M = typename TypeParam::Scalar;
+  using B = Ball<M>;
+  for (const B& x : {B(0), B(M(0), 5e-324), B(M(0), 1e-300), B(M(0), 1e-30)}) {
     const auto doubles = in_doubles(x);
     EXPECT_LT(doubles.low, 0);
     EXPECT_GT(doubles.high, 0);
-    EXPECT_TRUE(N(doubles.low) < x && x < N(doubles.high));
+    EXPECT_TRUE(B(doubles.low) < x && x < B(doubles.high));
     EXPECT_LT(doubles.high - doubles.low, 3 * static_cast<double>(x.radius()) + 1e-280);
   }
 }
 
 TYPED_TEST(Balls, LiteralsAreEnclosed) {
-  using B = Ball<TypeParam>;
+  using B = Ball<typename TypeParam::Scalar>;
   for (const auto& [text, numerator, denominator] :
        {std::tuple{"0.999", 999, 1000}, {"1e-5", 1, 100000}, {"0.3333333", 3333333, 10000000}, {"-7", -7, 1}}) {
     const B x = from_text<B>(text);
@@ -244,10 +237,11 @@ TYPED_TEST(Balls, LiteralsAreEnclosed) {
 }
 
 TYPED_TEST(Balls, WhatMayBeZeroDividesNothing) {
-  using B = Ball<TypeParam>;
-  EXPECT_FALSE(is_finite(B(1) / B(TypeParam(1), 2)));
+  using M = typename TypeParam::Scalar;
+  using B = Ball<M>;
+  EXPECT_FALSE(is_finite(B(1) / B(M(1), 2)));
   EXPECT_EQ(order(B(1) / B(0), B(5)), Order::open);
-  EXPECT_FALSE(is_positive(B(TypeParam(1), 1)));
+  EXPECT_FALSE(is_positive(B(M(1), 1)));
 }
 
 // The next decimals outside, by a type that holds the ends exactly. Ends that would be rounded to the power of ten

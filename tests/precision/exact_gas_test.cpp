@@ -74,19 +74,15 @@ template <class T, class F> void for_each_run(const Drawn& d, GasLaw kind, F f) 
     if (particles->identical_masses() && !particles->fall()) f(Simulation(law, GapChain<T>(particles, T(0), true)));
     if (!particles->on_ring()) f(Simulation(law, PositionChain<T>(particles, T(0))));
   };
+  if (kind == GasLaw::inelastic && !d.exponent) bouncing(Inelastic<T>(restitution, threshold));
+  if (kind == GasLaw::contact_time) bouncing(ContactTime<T>(Inelastic<T>(restitution), contact_time<T>(d)));
   if constexpr (!std::same_as<T, bin_float>) {
-    if (kind == GasLaw::inelastic && !d.has_roots()) bouncing(Inelastic<T>(restitution, threshold));
-    if (kind == GasLaw::contact_time && !d.has_roots())
-      bouncing(ContactTime<T>(Inelastic<T>(restitution), contact_time<T>(d)));
     if (kind == GasLaw::sticky) merging(Sticky<T>()), f(StickyGas<T>(particles, T(0)));
     if (kind == GasLaw::merging) merging(InelasticMerging<T>(Inelastic<T>(restitution), merge_speed<T>(d)));
   }
   if constexpr (!std::same_as<T, Rational>) {
-    if (kind == GasLaw::wet) return merging(Wet<T>(T(d.loss) / T(64)));
-    if (d.exponent) return bouncing(SpeedDependent<T>(restitution, threshold, coefficient<T>(d.exponent)));
-    if (d.acceleration == 0) return;
-    if (kind == GasLaw::inelastic) bouncing(Inelastic<T>(restitution, threshold));
-    if (kind == GasLaw::contact_time) bouncing(ContactTime<T>(Inelastic<T>(restitution), contact_time<T>(d)));
+    if (kind == GasLaw::wet) merging(Wet<T>(T(d.loss) / T(64)));
+    if (d.exponent) bouncing(SpeedDependent<T>(restitution, threshold, coefficient<T>(d.exponent)));
   }
 }
 

@@ -35,13 +35,11 @@ namespace cradle::test::fronts_test {
 template <class P> using Fronts = InPrecision<P>;
 TYPED_TEST_SUITE(Fronts, EveryPrecision, PrecisionName);
 
-using Tracer = theory::FrontRecursion<Reference>;
-using WetTracer = theory::WetFrontRecursion<Reference>;
-template <class T> Tracer tracer(const T& restitution) {
-  return Tracer(theory::InelasticShock<Reference>{reference(restitution)});
+template <class T> auto tracer(const T& restitution) {
+  return theory::FrontRecursion<Reference>(theory::InelasticShock<Reference>{reference(restitution)});
 }
-template <class T> WetTracer wet_tracer(const T& loss) {
-  return WetTracer(theory::WetShock<Reference>{reference(loss)});
+template <class T> auto wet_tracer(const T& loss) {
+  return theory::WetFrontRecursion<Reference>(theory::WetShock<Reference>{reference(loss)});
 }
 
 // At a third of the way to the next collision all of this one are made.

@@ -33,29 +33,19 @@ bool same(mpfr_srcptr a, mpfr_srcptr b) {
 
 template <class T> class RandomNumbers {
  public:
-  explicit RandomNumbers(unsigned long seed) : random_(seed) {
-    gmp_randinit_mt(state_);
-    gmp_randseed_ui(state_, seed);
-  }
-  RandomNumbers(const RandomNumbers&) = delete;
-  RandomNumbers& operator=(const RandomNumbers&) = delete;
-  ~RandomNumbers() { gmp_randclear(state_); }
+  explicit RandomNumbers(std::uint64_t seed) : random_(seed) {}
 
   // All bits random, exponents of a few units (so that sums cancel) or far beyond double's.
   T operator()() {
-    Plain x;
-    mpfr_urandomb(x.value, state_);
-    const long spread = random_() % 4 == 0 ? 100000 : 3;
-    mpfr_mul_2si(x.value, x.value, static_cast<long>(random_() % static_cast<unsigned long>(2 * spread)) - spread,
-                 MPFR_RNDN);
-    if (random_() & 1) mpfr_neg(x.value, x.value, MPFR_RNDN);
-    T number;
-    mpfr_set(const_cast<mpfr_ptr>(number.get()), x.value, MPFR_RNDN);
-    return number;
+    T x(0);
+    for (long bits = 0; bits < MpfrPrecision::bits(); bits += 40)
+      x = (x + T(static_cast<std::int64_t>(random_() >> 24))) / T(std::int64_t{1} << 40);
+    const std::uint64_t spread = random_() % 4 == 0 ? 100000 : 3;
+    x = ldexp(x, static_cast<long>(random_() % (2 * spread)) - static_cast<long>(spread));
+    return random_() & 1 ? T(-x) : x;
   }
 
  private:
-  gmp_randstate_t state_;
   std::mt19937_64 random_;
 };
 

@@ -24,9 +24,8 @@ struct Rationals {
   static Rational rounded(const Rational& x, bool up) {
     using boost::multiprecision::cpp_int;
     static const cpp_int unit = cpp_int(1) << 450;
-    const cpp_int over = numerator(x) * unit, under = denominator(x);
-    cpp_int whole = over / under;
-    const cpp_int rest = over - whole * under;
+    cpp_int whole, rest;
+    divide_qr(cpp_int(numerator(x) * unit), cpp_int(denominator(x)), whole, rest);
     if (rest == 0) return x;
     if (up && rest > 0) ++whole;
     if (!up && rest < 0) --whole;

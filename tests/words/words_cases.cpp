@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <random>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "cradle/core/words/ranges.hpp"
@@ -43,12 +44,6 @@ class Words : public testing::Test {
 
 Real root(int of) { return sqrt(Real(of)); }
 
-struct Known {
-  const char* word;
-  std::size_t particles;
-  Real end;
-};
-
 // However small the roots are, which the bound that the search begins with is not.
 TEST_F(Words, TheLargestModulusHasAllDigitsOfADouble) {
   const Real small = number("3e-9"), smaller = number("-1e-9");
@@ -57,17 +52,19 @@ TEST_F(Words, TheLargestModulusHasAllDigitsOfADouble) {
 }
 
 TEST_F(Words, HaveTheEndsThatAreKnownProvedTo30Digits) {
-  for (const Known& known : {Known{"ab", 3, Real(7) - Real(4) * root(3)}, Known{"acb", 4, Real(3) - Real(2) * root(2)},
-                             Known{"ababcb", 4, Real(5) - Real(2) * root(6)}}) {
-    const auto found = ranges_of(known.word, known.particles);
-    ASSERT_EQ(found.size(), 1U) << known.word;
+  for (const auto& [word, particles, end] : {std::tuple{"ab", 3U, Real(7) - Real(4) * root(3)},
+                                             {"acb", 4U, Real(3) - Real(2) * root(2)},
+                                             {"ababcb", 4U, Real(5) - Real(2) * root(6)}}) {
+    SCOPED_TRACE(word);
+    const auto found = ranges_of(word, particles);
+    ASSERT_EQ(found.size(), 1U);
     const Range<Real>& range = found.front();
-    EXPECT_TRUE(range.high_ends) << known.word;
-    EXPECT_LT(magnitude(Real(range.high.at - known.end)), number("1e-60")) << known.word;
+    EXPECT_TRUE(range.high_ends);
+    EXPECT_LT(magnitude(Real(range.high.at - end)), number("1e-60"));
     // Existence is proved from 1e-32 on and up to 1e-32 below the end.
     EXPECT_EQ(range.low.is, End<Real>::Is::zero);
-    EXPECT_TRUE(range.low_ends) << known.word;
-    EXPECT_LT(known.end - range.proved_high, number("1.1e-32")) << known.word;
+    EXPECT_TRUE(range.low_ends);
+    EXPECT_LT(end - range.proved_high, number("1.1e-32"));
   }
 }
 

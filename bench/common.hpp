@@ -28,6 +28,12 @@ inline double seconds_now(clockid_t clock = CLOCK_THREAD_CPUTIME_ID) {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
+template <class Work> double seconds_of(const Work& work, clockid_t clock = CLOCK_THREAD_CPUTIME_ID) {
+  const double start = seconds_now(clock);
+  work();
+  return seconds_now(clock) - start;
+}
+
 inline std::uint64_t hash(std::uint64_t i) { return cradle::splitmix64(i + 0x9E3779B97F4A7C15); }
 
 // The paper's two rows, displaced by hashes.

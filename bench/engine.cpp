@@ -106,9 +106,7 @@ template <class Engine> void measure(benchmark::State& state, const Case& c, con
     double last = 0;
     for (const Check& at : c.checks) {
       before = engine.collisions();
-      const double start = seconds_now(clock_of<Engine>);
-      engine.advance(at.time);
-      last = seconds_now(clock_of<Engine>) - start;
+      last = seconds_of([&] { engine.advance(at.time); }, clock_of<Engine>);
       seconds += last;
       check(run, engine_name, at.time, engine.collisions(), at.collisions);
     }

@@ -68,9 +68,8 @@ void enter(const std::string& of, const Measured& measured, const ParticlesPoint
   enter_timed(of + "/" + measured.engine, [=](benchmark::State& state) {
     std::uint64_t collisions = 0;
     for (auto iteration : state) {
-      const double start = seconds_now(measured.clock);
-      const std::uint64_t made = measured.run(particles, loss, until);
-      state.SetIterationTime(seconds_now(measured.clock) - start);
+      std::uint64_t made = 0;
+      state.SetIterationTime(seconds_of([&] { made = measured.run(particles, loss, until); }, measured.clock));
       check(of, measured.engine, until, made, published);
       collisions += made;
     }

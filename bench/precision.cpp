@@ -169,19 +169,17 @@ template <class Once> void measure_speed(benchmark::State& state, Report found, 
 double time_engine(const Engine& engine, const ShockScene& scene, std::uint64_t& collisions) {
   return with_chain<double>(engine, [&]<class Chain>(std::type_identity<Chain>) {
     Run<Chain> simulation = prepare<Chain>(scene);
-    const double start = bench::seconds_now();
-    simulation.advance(typename Chain::Scalar(scene.times.back()));
+    const double seconds = bench::seconds_of([&] { simulation.advance(typename Chain::Scalar(scene.times.back())); });
     collisions = simulation.counts().collisions;
-    return bench::seconds_now() - start;
+    return seconds;
   });
 }
 
 template <class Queue> double time_twin(const ShockScene& scene, std::uint64_t& collisions) {
   twins::QueueEngine<Queue> twin(*bench::rows<double>(scene.particles), {0.999, 1e-5});
-  const double start = bench::seconds_now();
-  twin.advance(scene.times.back());
+  const double seconds = bench::seconds_of([&] { twin.advance(scene.times.back()); });
   collisions = twin.collisions();
-  return bench::seconds_now() - start;
+  return seconds;
 }
 
 // ---- list of measurements

@@ -68,13 +68,8 @@ bool compare(const char* name, const std::shared_ptr<const Particles<typename Ch
   double of_loop = 0, of_steps = 0, late_loop = 0, late_steps = 0;
   for (int k = 1; k <= pieces; ++k) {
     const T to(until * k / pieces);
-    const double start = seconds_now();
-    by_loop(loop, to, in_loop);
-    const double between = seconds_now();
-    by_steps(steps, to, in_steps);
-    const double end = seconds_now();
-    of_loop += between - start, of_steps += end - between;
-    late_loop = between - start, late_steps = end - between;
+    of_loop += late_loop = seconds_of([&] { by_loop(loop, to, in_loop); });
+    of_steps += late_steps = seconds_of([&] { by_steps(steps, to, in_steps); });
   }
   const bool same = loop.counts().collisions == steps.counts().collisions && loop.energy_lost() == steps.energy_lost();
   const auto collisions = static_cast<double>(steps.counts().collisions);
@@ -98,11 +93,9 @@ bool compare_threads(const char* name, const ParticlesPointer& scene, double unt
   Segments<Law, Chain> by_one({}, {.steps = fastest_steps()}), by_two(workers(two), {.steps = fastest_steps()});
   double of_one = 0, of_two = 0;
   for (int k = 1; k <= pieces; ++k) {
-    const double to = until * k / pieces, start = seconds_now(CLOCK_MONOTONIC);
-    alone.advance(to, by_one);
-    const double between = seconds_now(CLOCK_MONOTONIC);
-    together.advance(to, by_two);
-    of_one += between - start, of_two += seconds_now(CLOCK_MONOTONIC) - between;
+    const double to = until * k / pieces;
+    of_one += seconds_of([&] { alone.advance(to, by_one); }, CLOCK_MONOTONIC);
+    of_two += seconds_of([&] { together.advance(to, by_two); }, CLOCK_MONOTONIC);
   }
   const bool same = alone.counts().collisions == together.counts().collisions;
   const auto collisions = static_cast<double>(alone.counts().collisions);

@@ -86,9 +86,8 @@ template <class Run> void enter_ball(const std::string& name, double until, bool
   enter_timed(name, [=](benchmark::State& state) {
     std::uint64_t bounces = 0;
     for (auto iteration : state) {
-      const double start = seconds_now();
-      const std::uint64_t made = run(until);
-      state.SetIterationTime(seconds_now() - start);
+      std::uint64_t made = 0;
+      state.SetIterationTime(seconds_of([&] { made = run(until); }));
       if (checked) check(name.substr(0, name.rfind('/')), name, until, made, 0);
       bounces += made;
     }
@@ -109,9 +108,7 @@ void enter_column(const std::string& name, Wall floor, std::optional<Wall> ceili
       for (auto iteration : state) {
         cradle::Simulation run(Law(0.9999, 1e-5), Chain(particles, 0.));
         cradle::Segments<Law, Chain> segments({}, {.steps = cradle::fastest_steps()});
-        const double start = seconds_now();
-        in_segments ? run.advance(4000, segments) : run.advance(4000);
-        state.SetIterationTime(seconds_now() - start);
+        state.SetIterationTime(seconds_of([&] { in_segments ? run.advance(4000, segments) : run.advance(4000); }));
         check(name, in_segments ? "steps" : "plain", 4000, run.counts().collisions, 0);
         collisions += run.counts().collisions;
       }

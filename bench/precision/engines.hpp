@@ -87,15 +87,13 @@ inline double relative_error(const Wide& value, const Wide& exact) {
 
 // Seconds of one call of f: the least of several trials, or of one trial if a call takes long.
 template <class F> double best_seconds(F f) {
-  const auto seconds_of = [&](int calls) {
-    const double start = bench::seconds_now();
-    for (int i = 0; i < calls; ++i) f();
-    return (bench::seconds_now() - start) / calls;
-  };
-  double best = seconds_of(1);
+  double best = bench::seconds_of(f);
   if (best > 1) return best;
   const int calls = std::max(1, static_cast<int>(0.05 / best));
-  for (int trial = 0; trial < 4; ++trial) best = std::min(best, seconds_of(calls));
+  const auto all = [&] {
+    for (int i = 0; i < calls; ++i) f();
+  };
+  for (int trial = 0; trial < 4; ++trial) best = std::min(best, bench::seconds_of(all) / calls);
   return best;
 }
 

@@ -27,23 +27,16 @@ template <class Work> void with_run(int number, const std::function<bool()>& int
   };
   const Inelastic<double> dry(0.9, 1e-3);
   const Wet<double> wet(0.01);
-  switch (number % 7) {
-  case 0:
-    return simulation(dry, GapChain<double>(rows, 0.));
-  case 1:
-    return simulation(dry, GapChain<double>(ring, 0.));
-  case 2:
+  const int kind = number % 7;
+  if (kind == 0) return simulation(dry, GapChain<double>(rows, 0.));
+  if (kind == 1) return simulation(dry, GapChain<double>(ring, 0.));
+  if (kind == 2)
     return simulation(ContactTime<double>(dry, 1e-3), GapChain<double, IndividualMasses<double>>(rows, 0.));
-  case 3:
-    return simulation(dry, PositionChain<double>(rows, 0.));
-  case 4:
-    return simulation(wet, ClusterChain<double>(rows, 0.));
-  case 5:
-    return simulation(wet, ClusterChain<double>(ring, 0.));
-  default:
-    if (number & 8) return work(StickyGas<double>(rows, 0.));
-    work(StickyGas<double>(ring, 0.));
-  }
+  if (kind == 3) return simulation(dry, PositionChain<double>(rows, 0.));
+  if (kind == 4) return simulation(wet, ClusterChain<double>(rows, 0.));
+  if (kind == 5) return simulation(wet, ClusterChain<double>(ring, 0.));
+  if (number & 8) return work(StickyGas<double>(rows, 0.));
+  work(StickyGas<double>(ring, 0.));
 }
 
 }  // namespace cradle::fuzz

@@ -19,7 +19,6 @@ namespace cradle::test::mpfr_test {
 class Plain {
  public:
   Plain() { mpfr_init2(value, MpfrPrecision::bits()); }
-  explicit Plain(mpfr_srcptr x) : Plain() { mpfr_set(value, x, MPFR_RNDN); }
   Plain(const Plain&) = delete;
   Plain& operator=(const Plain&) = delete;
   ~Plain() { mpfr_clear(value); }

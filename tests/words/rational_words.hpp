@@ -37,9 +37,8 @@ struct Rationals {
   friend Rationals operator+(const Rationals& a, const Rationals& b) { return {a.low + b.low, a.high + b.high}; }
   friend Rationals operator-(const Rationals& a, const Rationals& b) { return {a.low - b.high, a.high - b.low}; }
   friend Rationals operator*(const Rationals& a, const Rationals& b) {
-    const std::vector<Rational> all{a.low * b.low, a.low * b.high, a.high * b.low, a.high * b.high};
-    const auto [least, most] = std::minmax_element(all.begin(), all.end());
-    return {*least, *most};
+    const auto [least, most] = std::minmax({a.low * b.low, a.low * b.high, a.high * b.low, a.high * b.high});
+    return {least, most};
   }
   friend Rationals operator/(const Rationals& a, const Rationals& b) {
     if (!b.positive() && !b.negative()) throw std::runtime_error("division by what may be 0");

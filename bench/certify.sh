@@ -28,8 +28,7 @@ line() {
   run=$(seconds "$repeats" "$cradle" run "${scene[@]}" --threads 1 -o run.h5 --force)
   proof=$(seconds "$repeats" "$cradle" certify "${scene[@]}" "${digits[@]}" -o proof.h5 --force)
   local verdict collisions balls energy until
-  grep -qE '^(proved|undecided)' last || { echo "$name: no verdict" >&2; cat last >&2; exit 1; }
-  verdict=$(grep -oE '^(proved|undecided)' last | head -1)
+  verdict=$(grep -m 1 -oE '^(proved|undecided)' last) || { echo "$name: no verdict" >&2; cat last >&2; exit 1; }
   collisions=$(grep -oE '[0-9]+ collisions' last | head -1)
   until=$(sed -nE 's/^(proved: .*up to|undecided at) t = ([^ ,]*).*/\2/p' last | head -1)
   balls=$(sed -nE 's/^  run in +(.*), proved in balls around (.*); .*/\1 | \2/p' last)

@@ -23,7 +23,7 @@
 namespace cradle::test {
 
 using std::exp, std::pow, std::sqrt;  // of long double; those of wider numbers are found by their types
-inline Rational sqrt(const Rational&) { throw std::logic_error("a root of a rational"); }
+inline Rational sqrt(const Rational&) { throw std::logic_error("a root of a rational"); }  // 100 digits have them
 inline Rational exp(const Rational&) { throw std::logic_error("the exponential of a rational"); }
 inline Rational pow(const Rational&, const Rational&) { throw std::logic_error("a rational power"); }
 

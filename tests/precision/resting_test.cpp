@@ -40,17 +40,14 @@ struct Brute {
   const Setup& setup;
   Reference displaced;  // at each event all free ones are, in turn to either side
   Reference t{0}, pi = boost::math::constants::pi<Reference>();
-  std::vector<Reference> x, v;  // of free ones
+  std::vector<Reference> x = numbers<Reference>(places), v = numbers<Reference>(velocities);  // of free ones
   std::size_t resting = 0;
   struct Event {
     Reference time;
     int left;
   };
-  std::vector<Event> events;
+  std::vector<Event> events{};
 
-  Brute(const Setup& of, const Reference& by) : setup(of), displaced(by) {
-    x = numbers<Reference>(places), v = numbers<Reference>(velocities);
-  }
   Reference turns(const Reference& at) const {
     const Reference y = frequency * at / (2 * pi);
     return y - floor(y + Reference(0.5));
@@ -181,7 +178,7 @@ TYPED_TEST(SlowRestingIn, ThePileHasTheCollisionsOfBruteForce) {
   using T = typename TypeParam::Scalar;
   for (const Setup& setup : setups) {
     SCOPED_TRACE(setup.name);
-    Brute brute(setup, Reference(0)), displaced(setup, small);
+    Brute brute{setup, Reference(0)}, displaced{setup, small};
     brute.run(), displaced.run();
     const auto found = events_of<T>(setup);
     ASSERT_EQ(displaced.events.size(), brute.events.size());

@@ -23,57 +23,41 @@ counted() { # counted WHAT: the status of the command before says whether it wen
 }
 left_out() { order+=("$1"); tried[$1]=0 failed[$1]="not tried: $2"; }
 
-# ---- kills: after every one, `resume` must give the bytes of the uninterrupted run
+# ---- kills: after every one, `resume` must give the bytes of the uninterrupted command
+kill_each() { # kill_each WHAT OPTIONS COMMAND...: in turn, at any time; leaves what they give: run0.h5, run1.h5, ...
+  local what=$1 options=$2 commands=("${@:3}") whole=${1#* } file=killed.h5 took=() from k n pid
+  for k in "${!commands[@]}"; do
+    from=$(date +%s%N)
+    cradle ${commands[k]} $options -o $whole$k.h5
+    took[k]=$((($(date +%s%N) - from) / 1000000))
+  done
+  for ((n = 0; n < kills; ++n)); do
+    k=$((n % ${#commands[@]}))
+    rm -f $file*
+    "$program" ${commands[k]} $options -o $file & pid=$!
+    sleep "$(awk -v t="${took[k]}" -v r=$RANDOM 'BEGIN { print t / 1000 * r / 32768 }')"
+    kill -9 $pid 2>/dev/null; wait $pid 2>/dev/null
+    if [ ! -e $file ] && [ ! -e $file.part ]; then cradle ${commands[k]} $options -o $file; fi # before it had begun
+    cradle resume $file --quiet >/dev/null && cradle diff $file $whole$k.h5 >/dev/null && cmp -s $file $whole$k.h5 &&
+      [ ! -e $file.part ]
+    counted "kill -9 of $what, then resume" "${commands[k]}"
+  done
+}
 dry='fig2 --set run.until=6000 --set output.snapshots=[1000,5500]'
 none='--set output.profiles.times=[] --set output.snapshots=[]'
-runs=(
-  "$dry"
-  'fig2 --set initial.particles=2000 --set run.until=1300 --set output.events=true'
-  'fig6 --set initial.particles=8000 --set run.until=2500 --set output.snapshots=[] --set output.masses=[]'
-  'cooling --set law.type=inelastic --set law.restitution=0.99 --set law.cutoff=0.01'\
-' --set initial.particles=20000 --set run.until=200'
-  "fig2 --set initial.particles=1000 --set run.until=700 --set run.precision=mpfr $none"
-  'fig2 --set run.until=3000 --set run.coordinates=absolute'
-  'cooling --set initial.particles=200000'
-)
 often='--quiet --set output.checkpoint.every_seconds=0.1'
-for k in "${!runs[@]}"; do
-  from=$(date +%s%N)
-  cradle run ${runs[k]} $often -o whole$k.h5
-  took[k]=$((($(date +%s%N) - from) / 1000000))
-done
-for ((n = 0; n < kills; ++n)); do
-  k=$((n % ${#runs[@]})) file=killed.h5
-  rm -f $file*
-  "$program" run ${runs[k]} $often -o $file & pid=$!
-  sleep "$(awk -v t="${took[k]}" -v r=$RANDOM 'BEGIN { print t / 1000 * r / 32768 }')"
-  kill -9 $pid 2>/dev/null; wait $pid 2>/dev/null
-  if [ ! -e $file ] && [ ! -e $file.part ]; then cradle run ${runs[k]} $often -o $file; fi # before it had begun
-  cradle resume $file --quiet >/dev/null && cradle diff $file whole$k.h5 >/dev/null && cmp -s $file whole$k.h5 &&
-    [ ! -e $file.part ]
-  counted 'kill -9 of a run, then resume' "${runs[k]}"
-done
-ensembles=(
-  "ensemble fig2 --replicas 600 --set initial.particles=300 --set run.until=200 $none"
-  'ensemble fig11 --replicas 150 --set initial.particles=2000 --set run.until=1000 --set output.masses=[]'
+kill_each 'a run' "$often" "run $dry" \
+  'run fig2 --set initial.particles=2000 --set run.until=1300 --set output.events=true' \
+  'run fig6 --set initial.particles=8000 --set run.until=2500 --set output.snapshots=[] --set output.masses=[]' \
+  'run cooling --set law.type=inelastic --set law.restitution=0.99 --set law.cutoff=0.01
+   --set initial.particles=20000 --set run.until=200' \
+  "run fig2 --set initial.particles=1000 --set run.until=700 --set run.precision=mpfr $none" \
+  'run fig2 --set run.until=3000 --set run.coordinates=absolute' \
+  'run cooling --set initial.particles=200000'
+kill_each 'an ensemble' --quiet \
+  "ensemble fig2 --replicas 600 --set initial.particles=300 --set run.until=200 $none" \
+  'ensemble fig11 --replicas 150 --set initial.particles=2000 --set run.until=1000 --set output.masses=[]' \
   "sweep fig2 --vary law.restitution=0.99:0.999:4 --replicas 150 --set initial.particles=300 --set run.until=200 $none"
-)
-for k in "${!ensembles[@]}"; do
-  from=$(date +%s%N)
-  cradle ${ensembles[k]} --quiet -o ensemble$k.h5
-  took[k]=$((($(date +%s%N) - from) / 1000000))
-done
-for ((n = 0; n < kills; ++n)); do
-  k=$((n % ${#ensembles[@]})) file=killed.h5
-  rm -f $file*
-  "$program" ${ensembles[k]} --quiet -o $file & pid=$!
-  sleep "$(awk -v t="${took[k]}" -v r=$RANDOM 'BEGIN { print t / 1000 * r / 32768 }')"
-  kill -9 $pid 2>/dev/null; wait $pid 2>/dev/null
-  if [ ! -e $file ] && [ ! -e $file.part ]; then cradle ${ensembles[k]} --quiet -o $file; fi
-  cradle resume $file --quiet >/dev/null && cradle diff $file ensemble$k.h5 >/dev/null && cmp -s $file ensemble$k.h5 &&
-    [ ! -e $file.part ]
-  counted 'kill -9 of an ensemble, then resume' "${ensembles[k]}"
-done
 
 # halted FILE starts a run that has a checkpoint and is halted ($pid is its process), and makes whole.h5, its expected
 # result. If the run ends too early, on a fast machine, it is made again, twice as long. It ends by itself when it is
@@ -106,12 +90,12 @@ if unshare --user --map-root-user --mount true 2>/dev/null; then
     unshare --user --map-root-user --mount bash -c '
       mount -t tmpfs -o size=$size tmpfs small && export TMPDIR=$PWD/elsewhere
       cradle run $dry $often -o small/a.h5 2>small.err; status=$?
-      if [ $status = 0 ]; then cmp -s small/a.h5 whole0.h5; exit; fi
+      if [ $status = 0 ]; then cmp -s small/a.h5 run0.h5; exit; fi
       [ $status = 4 ] || exit 1
       grep -q "what to do\|space\|room\|resume\|move it" small.err || exit 1
       mount -o remount,size=8m small
-      if [ -e small/a.h5.part ]; then cradle resume small/a.h5 --quiet && cmp -s small/a.h5 whole0.h5; exit; fi
-      found=$(find elsewhere -name a.h5); if [ -n "$found" ]; then cmp -s "$found" whole0.h5; exit; fi
+      if [ -e small/a.h5.part ]; then cradle resume small/a.h5 --quiet && cmp -s small/a.h5 run0.h5; exit; fi
+      found=$(find elsewhere -name a.h5); if [ -n "$found" ]; then cmp -s "$found" run0.h5; exit; fi
       [ ! -e small/a.h5 ]'
     counted 'full disk, then room' "$size: $(head -c 300 small.err)"
     rm -rf elsewhere small
@@ -188,7 +172,7 @@ if [ -n "$library" ]; then
       "$program" run $dry $often -o clock.h5 & pid=$!
     until [ -e clock.h5.checkpoint ]; do sleep 0.01; done
     kill -STOP $pid; echo $jump >clock; kill -CONT $pid
-    wait $pid && cmp -s clock.h5 whole0.h5
+    wait $pid && cmp -s clock.h5 run0.h5
     counted 'the clock jumps' "$jump"
   done
 else

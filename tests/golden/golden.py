@@ -1,4 +1,4 @@
-"""Compares the bits of some 300 results with golden.txt, for changes that are to keep them all.
+"""Compares the bits of results with golden.txt, for changes that are to keep them all.
 
   CRADLE_PROGRAM=PROGRAM /usr/bin/python3 golden.py [--part 1/2] [--against OTHER] [--write]
 
@@ -8,6 +8,7 @@ the program OTHER. --write makes the checksums anew, of bits that change on purp
 import argparse
 import hashlib
 import os
+import pathlib
 import re
 import shlex
 import shutil
@@ -17,8 +18,8 @@ import tempfile
 
 import h5py
 
-HERE = os.path.dirname(os.path.abspath(__file__))
-TABLE = os.path.join(HERE, "golden.txt")
+HERE = pathlib.Path(__file__).resolve().parent
+TABLE = HERE / "golden.txt"
 WRITERS = ("run", "ensemble", "sweep", "merge", "certify", "trust", "threshold", "words")
 LACKING = {"float128": "float128", "mpfr": r"mpfr|certify|trust|threshold|words|initial\.word"}  # in some builds
 # Rows whose last digits are those of a library, which this was when they were made: arithmetic and roots.
@@ -52,7 +53,7 @@ def checksums(program, row):
     """The status of a row, checksums of the numbers (with names, types and shapes) and of the texts (those in
     attributes, and what is printed or exported) of its results, and its message if there is one."""
     with tempfile.TemporaryDirectory() as parent:
-        folder = os.path.join(parent, "row")
+        folder = pathlib.Path(parent, "row")
         done, printed = run(program, row, folder)
         numbers, texts = hashlib.blake2b(digest_size=6), hashlib.blake2b(printed.encode(), digest_size=3)
 
@@ -66,15 +67,13 @@ def checksums(program, row):
                 else:
                     numbers.update(f"{name}.{key} {value.dtype.str} {value.shape} ".encode() + value.tobytes())
 
-        for path, _, files in sorted(os.walk(folder)):
-            for file in sorted(files):
-                if file.endswith(".h5"):
-                    with h5py.File(os.path.join(path, file), locking=False) as result:
-                        add("", result)
-                        result.visititems(add)
-                elif path != folder:
-                    with open(os.path.join(path, file), "rb") as exported:
-                        texts.update(re.sub(rb"# cradle_version.*", b"", exported.read()))
+        for file in sorted(folder.rglob("*"), key=lambda file: (str(file.parent), file.name)):
+            if file.suffix == ".h5":
+                with h5py.File(file, locking=False) as result:
+                    add("", result)
+                    result.visititems(add)
+            elif file.is_file() and file.parent != folder:
+                texts.update(re.sub(rb"# cradle_version.*", b"", file.read_bytes()))
         return [str(done.returncode), numbers.hexdigest(), texts.hexdigest()], done.stderr
 
 
@@ -82,18 +81,14 @@ def difference(program, other, row):
     """What `cradle diff` says of the results of two programs."""
     with tempfile.TemporaryDirectory() as parent:
         for name, which in (("other", other), ("this", program)):
-            run(which, row, os.path.join(parent, name))
-        files = sorted(file for file in os.listdir(os.path.join(parent, "this")) if file.endswith(".h5"))
+            run(which, row, pathlib.Path(parent, name))
+        files = sorted(file.name for file in pathlib.Path(parent, "this").glob("*.h5"))
         return "".join(call(program, parent, "diff", f"other/{file}", f"this/{file}").stdout for file in files)
 
 
 def uncovered(program, rows):
     """Keys of scenes, and the words that may stand for their values, that are in no row and in no scene here."""
-    text = "\n".join(rows)
-    for file in os.listdir(HERE):
-        if file.endswith(".toml"):
-            with open(os.path.join(HERE, file), encoding="utf-8") as scene:
-                text += "\n" + scene.read()
+    text = "\n".join([*rows, *(scene.read_text("utf-8") for scene in HERE.glob("*.toml"))])
     text = text.replace(" = ", "=").replace('"', "")
     for key, kind in re.findall(r"^(\S+)  \((.*)\)$", call(program, HERE, "scenes", "--keys").stdout, re.M):
         choices = re.sub("^(one of|list of texts) ", "", kind.split(",")[0]).split(" | ")
@@ -112,8 +107,7 @@ def main():
     options = parser.parse_args()
     program = os.path.realpath(os.environ["CRADLE_PROGRAM"])
     first, step = map(int, options.part.split("/"))
-    with open(TABLE, encoding="utf-8") as table:
-        lines = table.read().splitlines()
+    lines = TABLE.read_text("utf-8").splitlines()
     rows = {number: line.split(" ", 3) for number, line in enumerate(lines) if line and not line.startswith("#")}
     types = call(program, HERE, "--version").stdout
     left_out = "|".join(rows for name, rows in (LACKING | OF_LIBRARY).items() if name not in types) or "$^"
@@ -133,8 +127,7 @@ def main():
             if options.against:
                 wrong.append(difference(program, os.path.realpath(options.against), row))
     if options.write:
-        with open(TABLE, "w", encoding="utf-8") as table:
-            table.write("\n".join(lines) + "\n")
+        TABLE.write_text("\n".join(lines) + "\n", "utf-8")
     threads = {}
     for *sums, row in rows.values():
         threads.setdefault(re.sub(r" --threads \d+", "", row), []).append(sums)

@@ -3,12 +3,8 @@
 // lines of that name, which `@name =` begins and an empty line ends, or for the bundled scene of that name.
 
 #include <algorithm>
-#include <iterator>
 #include <map>
 #include <sstream>
-#include <stdexcept>
-#include <string>
-#include <vector>
 
 #include "cradle/tests/tools/program.hpp"
 #include "cradle/tools/scene/scene.hpp"

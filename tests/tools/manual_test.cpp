@@ -1,9 +1,6 @@
 // The manual, tools/manual/, describes this program: its quotations are what the program prints, it has every command
 // and every option, and it names every group, dataset and attribute of result files.
 
-#include <regex>
-#include <set>
-
 #include "cradle/tests/tools/cases.hpp"
 
 namespace cradle::tests::manual_test {

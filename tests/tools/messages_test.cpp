@@ -3,13 +3,8 @@
 // every key is in the table of keys, every command is one of the program's, and its options are options of that
 // command.
 #include <algorithm>
-#include <iterator>
 #include <map>
-#include <regex>
-#include <set>
 #include <sstream>
-#include <string>
-#include <vector>
 
 #include "cradle/tests/tools/program.hpp"
 #include "cradle/tools/setup/list_file.hpp"

@@ -1,7 +1,6 @@
 #pragma once
 // Runs the program as a user does: a shell command in a separate folder, with its exit status and its output.
 
-#include <gtest/gtest.h>
 #include <stdlib.h>
 #include <sys/wait.h>
 
@@ -11,8 +10,7 @@
 #include <fstream>
 #include <iterator>
 #include <optional>
-#include <stdexcept>
-#include <string>
+#include <vector>
 
 #include "cradle/tests/places.hpp"
 #include "cradle/tests/texts.hpp"

@@ -2,8 +2,6 @@
 // manual page has every command, option and key. (More of it: tests/tools/outputs.txt.)
 
 #include <sstream>
-#include <string>
-#include <vector>
 
 #include "cradle/tests/tools/program.hpp"
 #include "cradle/tools/scene/fields.hpp"

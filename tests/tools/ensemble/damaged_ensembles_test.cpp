@@ -7,8 +7,6 @@
 #include "cradle/tools/ensemble/merge.hpp"
 #include "cradle/tools/ensemble/state.hpp"
 #include "cradle/tools/result/writer.hpp"
-#include "cradle/tools/setup/read_scene.hpp"
-#include "cradle/tools/support/errors.hpp"
 
 namespace cradle::tests::damaged_ensembles_test {
 

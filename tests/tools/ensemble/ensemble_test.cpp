@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <stdexcept>
 
 #include "cradle/tests/tools/ensemble/ensembles.hpp"
 #include "cradle/tests/tools/ensemble/failing_replicas.hpp"

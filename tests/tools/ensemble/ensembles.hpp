@@ -1,10 +1,6 @@
 #pragma once
 // Small scenes for ensembles, and functions that read their files.
 
-#include <cstdint>
-#include <string>
-#include <vector>
-
 #include "cradle/tests/tools/program.hpp"
 #include "cradle/tools/ensemble/ensemble_store.hpp"
 #include "cradle/tools/scene/scene.hpp"

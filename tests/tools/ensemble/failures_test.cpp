@@ -1,6 +1,5 @@
 // Replicas that cannot be trusted are reported: in the status, the messages, the file (of an ensemble, of a point of a
 // sweep, in the table of points) and the report; and the printed command for one of them repeats exactly that replica.
-#include <regex>
 
 #include "cradle/tests/tools/ensemble/ensembles.hpp"
 

@@ -5,7 +5,6 @@
 #include <sys/resource.h>
 
 #include <cstdio>
-#include <functional>
 #include <map>
 
 #include "cradle/tests/tools/ensemble/ensembles.hpp"
@@ -13,8 +12,6 @@
 #include "cradle/tests/tools/result/result_files.hpp"
 #include "cradle/tools/commands/listing.hpp"
 #include "cradle/tools/ensemble/merge.hpp"
-#include "cradle/tools/setup/read_scene.hpp"
-#include "cradle/tools/support/errors.hpp"
 
 namespace cradle::tests::mutations_test {
 

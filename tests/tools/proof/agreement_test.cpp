@@ -3,9 +3,6 @@
 #include <algorithm>
 #include <functional>
 #include <memory>
-#include <optional>
-#include <set>
-#include <string>
 #include <utility>
 
 #include "cradle/tests/tools/program.hpp"

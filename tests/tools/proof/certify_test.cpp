@@ -1,9 +1,6 @@
 // Proofs of whole runs by the program, and the bounds in their files. (Every law that can be proved, threads, and where
 // proofs end: tests/tools/outputs.txt. What is refused: tests/tools/messages.txt.)
 #include <cmath>
-#include <cstdint>
-#include <string>
-#include <vector>
 
 #include "cradle/tests/tools/program.hpp"
 

@@ -2,7 +2,6 @@
 // to nine particles (separate groups, lattices, central masses, a few that move), rows, cold gases, rings, walls,
 // gravity and replicas, every law that can be proved, ends and samples with more digits than a double has. The numbers
 // of an undecided certificate are checked up to the time at which it is undecided.
-#include <cmath>
 #include <iostream>
 #include <random>
 

@@ -1,9 +1,6 @@
 // Malicious files: each gives a message that names the file and the place, and status 4; no crash, and nothing is
 // written outside the given folder. All are made with HDF5 itself, so that only the reader can refuse them.
 
-#include <functional>
-#include <vector>
-
 #include "cradle/tests/tools/result/result_files.hpp"
 
 namespace cradle::tests::damaged_files_test {

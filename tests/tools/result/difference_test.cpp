@@ -4,8 +4,6 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <string>
-#include <vector>
 
 #include "cradle/tests/tools/program.hpp"
 #include "cradle/tools/result/difference.hpp"

@@ -4,7 +4,6 @@
 #include <hdf5.h>
 
 #include <functional>
-#include <string>
 
 #include "cradle/tests/tools/program.hpp"
 #include "cradle/tools/result/csv.hpp"

@@ -3,7 +3,6 @@
 
 #include "cradle/tests/tools/result/result_files.hpp"
 #include "cradle/tools/commands/listing.hpp"
-#include "cradle/tools/support/errors.hpp"
 
 namespace cradle::tests::result_files_test {
 

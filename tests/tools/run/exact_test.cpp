@@ -2,8 +2,6 @@
 // the tables, and these numbers are known to the digits of the type.
 #include <cmath>
 #include <map>
-#include <string>
-#include <vector>
 
 #include "cradle/precision/text.hpp"
 #include "cradle/tests/core/rational.hpp"

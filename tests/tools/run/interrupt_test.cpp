@@ -6,9 +6,7 @@
 #include <signal.h>
 
 #include <csignal>
-#include <cstdlib>
 #include <initializer_list>
-#include <string>
 #include <thread>
 #include <utility>
 

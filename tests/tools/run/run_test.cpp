@@ -4,10 +4,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/tools/program.hpp"

@@ -1,6 +1,5 @@
 // Every scene of the package, at a size of a second or less, ends with the status that it is meant to end with
 // (small_scenes.txt, of which test_scenes.py makes reports and pictures). A scene that is added needs a row there.
-#include <set>
 
 #include "cradle/tests/tools/cases.hpp"
 

@@ -2,8 +2,6 @@
 // segments, in double and in wider types; and events are those of the plain loop. (Whether threads will be used is said
 // beforehand: outputs.txt.)
 
-#include <string>
-
 #include "cradle/tests/tools/program.hpp"
 
 namespace cradle::tests::run_threads_test {

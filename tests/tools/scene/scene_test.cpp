@@ -2,8 +2,6 @@
 // (values.txt). What is refused, and with which message, is in tests/tools/messages.txt.
 #include "cradle/tools/scene/scene.hpp"
 
-#include <algorithm>
-
 #include "cradle/tests/tools/cases.hpp"
 #include "cradle/tools/scene/fields.hpp"
 #include "cradle/tools/setup/read_scene.hpp"

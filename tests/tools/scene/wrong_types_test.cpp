@@ -1,7 +1,5 @@
 // Every row of the table of keys is given a value of every type that TOML has. Whatever is not of the type of the key
 // is refused with file, line and key, and nothing but a scene or such a refusal comes of any value.
-#include <map>
-#include <regex>
 
 #include "cradle/tests/tools/cases.hpp"
 #include "cradle/tools/scene/fields.hpp"

@@ -3,12 +3,9 @@
 // rationals.
 #include <cmath>
 #include <concepts>
-#include <cstdint>
 #include <limits>
 #include <random>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include <fmt/format.h>
 

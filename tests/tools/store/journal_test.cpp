@@ -4,11 +4,9 @@
 #include "cradle/tools/store/journal.hpp"
 
 #include <algorithm>
-#include <vector>
 
 #include "cradle/tests/tools/program.hpp"
 #include "cradle/tests/tools/result/small_files.hpp"
-#include "cradle/tools/support/errors.hpp"
 
 namespace cradle::tests::journal_test {
 

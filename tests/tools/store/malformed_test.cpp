@@ -2,11 +2,9 @@
 // is reported. Contents with a correct checksum, which an attacker can write, are refused or resumed to some end,
 // without a crash and within two seconds. CRADLE_MUTATIONS=10000 makes 10000 changes instead of 200.
 #include <sys/resource.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <cerrno>
-#include <functional>
 
 #include "cradle/tests/tools/mutator.hpp"
 #include "cradle/tests/tools/store/stopping.hpp"

@@ -1,11 +1,9 @@
 // Runs that are stopped anywhere and resumed end in the bytes of an uninterrupted run: law x scalar type x coordinates
 // x initial state x policy x threads x where it is cut.
-#include <fstream>
 #include <ostream>
 
 #include "cradle/tests/tools/cases.hpp"
 #include "cradle/tests/tools/store/stopping.hpp"
-#include "cradle/tools/result/reader.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
 
 namespace resume_test {

@@ -3,13 +3,10 @@
 #include <algorithm>
 #include <cstring>
 
-#include <gtest/gtest.h>
-
 #include "cradle/tests/tools/program.hpp"
 #include "cradle/tests/tools/result/small_files.hpp"
 #include "cradle/tools/result/difference.hpp"
 #include "cradle/tools/result/growing_tables.hpp"
-#include "cradle/tools/result/reader.hpp"
 #include "cradle/tools/result/writer.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
 #include "cradle/tools/store/run_files.hpp"

@@ -2,10 +2,8 @@
 // A sink that stops a run at a given point, after any part of its work.
 
 #include <csignal>
-#include <cstdint>
 #include <functional>
 #include <utility>
-#include <vector>
 
 #include "cradle/tests/tools/program.hpp"
 #include "cradle/tools/run/run.hpp"

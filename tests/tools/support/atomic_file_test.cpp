@@ -4,17 +4,10 @@
 #include "cradle/tools/support/atomic_file.hpp"
 
 #include <sys/stat.h>
-#include <sys/wait.h>
 #include <unistd.h>
-
-#include <iterator>
-#include <optional>
-#include <string>
-#include <vector>
 
 #include "cradle/tests/tools/program.hpp"
 #include "cradle/tests/tools/result/small_files.hpp"
-#include "cradle/tools/support/errors.hpp"
 
 namespace cradle::tests::atomic_file_test {
 

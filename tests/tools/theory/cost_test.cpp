@@ -3,10 +3,7 @@
 #include "cradle/tools/setup/read_scene.hpp"
 #include "cradle/tools/theory/cost.hpp"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
-#include <string>
 #include <vector>
 
 #include "cradle/core/chains/gap_chain.hpp"

@@ -1,10 +1,7 @@
 // `cradle threshold`: decisions in rationals beside runs, and continuation to the last byte. (Values at which outcomes
 // change that are known in closed form: tests/tools/outputs.txt. What is refused: tests/tools/messages.txt.)
 
-#include <cstdint>
 #include <random>
-#include <string>
-#include <vector>
 
 #include "cradle/tests/tools/program.hpp"
 #include "cradle/tools/run/run.hpp"

@@ -2,10 +2,7 @@
 // tests/tools/outputs.txt. What is refused: tests/tools/messages.txt.)
 
 #include <cmath>
-#include <cstdint>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include "cradle/tests/tools/program.hpp"
 

@@ -87,10 +87,11 @@ class ProgramTest : public testing::Test {
     shell("cradle run scene.toml --quiet --force -o result.h5 " + options, status);
     return read("result.h5");
   }
-  // Its results in all types of this build that are wider than double.
+  // Its results in all types of this build that are wider than double, mpfr with 100 digits.
   template <class Use> void in_wide_types(const std::string& scene, const std::string& options, const Use& use) const {
     write("scene.toml", scene);
-    for (const std::string precision : {"'long double'", "double-double", "float128", "cpp_bin_float", "mpfr"}) {
+    for (const std::string precision :
+         {"'long double'", "double-double", "float128", "cpp_bin_float", "mpfr --set run.digits=100"}) {
       SCOPED_TRACE(precision);
       const Printed run =
           shell("cradle run scene.toml --quiet --force -o wide.h5 --set run.precision=" + precision + " " + options);

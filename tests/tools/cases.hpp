@@ -19,11 +19,7 @@ struct ListedCase {
 
   // Of those that begin with their name.
   const std::string& name() const { return lines.front(); }
-  std::string below_name() const {
-    std::string text;
-    for (std::size_t k = 1; k < lines.size(); ++k) text += lines[k] + "\n";
-    return text;
-  }
+  std::string below_name() const { return fmt::format("{}", fmt::join(lines.begin() + 1, lines.end(), "\n")); }
   friend std::ostream& operator<<(std::ostream& out, const ListedCase& of) { return out << of.name(); }
 };
 

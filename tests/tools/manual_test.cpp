@@ -55,7 +55,6 @@ TEST_F(Manual, NamesEverythingInResultFiles) {
     int status = 0;
     std::string file, command = listed.below_name();
     head >> status >> file;
-    command.pop_back();  // the end of its last line
     shell(command + " --quiet -o " + file + ".h5", status);
     const tools::Result result = read(file + ".h5");
     for (const auto& [name, value] : result.attributes) expect(name, file);

@@ -1,6 +1,7 @@
 #pragma once
 // Runs the program as a user does: a shell command in a separate folder, with its exit status and its output.
 
+#include <fmt/format.h>
 #include <stdlib.h>
 #include <sys/wait.h>
 
@@ -138,6 +139,15 @@ inline std::string endless_run(const std::string& file) {
 inline std::string until_collisions(const std::string& file) {
   return " & pid=$!; until cradle info " + file +
          ".checkpoint 2>.not-yet | grep -q ', [1-9][0-9]* collisions'; do sleep 0.01; done; ";
+}
+
+// The command on the ranks of an MPI job: as any user, on any machine, all ranks on all processors. Open MPI takes what
+// is set here; others do without.
+inline std::string on_ranks(int ranks, const std::string& command) {
+  return fmt::format("OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 "
+                     "OMPI_MCA_rmaps_base_oversubscribe=1 OMPI_MCA_hwloc_base_binding_policy=none "
+                     "PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe mpirun -n {} {}",
+                     ranks, command);
 }
 
 }  // namespace cradle::tests

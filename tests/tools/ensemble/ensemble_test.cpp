@@ -1,8 +1,6 @@
 // The numbers in files of ensembles: statistics compared with those of single runs, how replicas ended, replicas that
 // collapse or fail.
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>

@@ -1,8 +1,6 @@
 // Ensembles across the ranks of an MPI job: the same bytes as one process, for any number of ranks and threads, after a
 // rank was killed and the launcher ended the job, and after a signal.
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
 #include "cradle/tests/tools/ensemble/ensembles.hpp"
@@ -21,14 +19,7 @@ class Mpi : public Ensembles {
     if (shell("command -v mpirun").status != 0) GTEST_SKIP() << "no mpirun";
   }
 
-  // As any user, on any machine, all ranks on all processors. Open MPI takes these; others do without.
-  static std::string job(int ranks, const std::string& command) { return launch(ranks, "cradle " + command); }
-  static std::string launch(int ranks, const std::string& command) {
-    return fmt::format("OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 "
-                       "OMPI_MCA_rmaps_base_oversubscribe=1 OMPI_MCA_hwloc_base_binding_policy=none "
-                       "PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe mpirun -n {} {}",
-                       ranks, command);
-  }
+  static std::string job(int ranks, const std::string& command) { return on_ranks(ranks, "cradle " + command); }
   void expect_no_journals() const {
     for (const auto& entry : std::filesystem::directory_iterator(folder))
       EXPECT_FALSE(has(entry.path().string(), ".part")) << entry.path();
@@ -107,7 +98,7 @@ TEST_F(Mpi, SignalToOneRankStopsAllAndLosesNothing) {
 TEST_F(Mpi, FailedReplicasAreListedWhicheverRankRanThem) {
   const std::string program = test::build_folder + "/tests/failing_ensemble wet.toml 60 ";
   for (const int ranks : {1, 2, 3}) {
-    const Printed failed = shell(launch(ranks, program + fmt::format("failed-{}.h5", ranks)), 5);
+    const Printed failed = shell(on_ranks(ranks, program + fmt::format("failed-{}.h5", ranks)), 5);
     EXPECT_TRUE(has(failed.out, "48 reached the end, 12 failed"));
   }
   expect_same("failed-1.h5", "failed-2.h5");

@@ -21,7 +21,6 @@ std::vector<Kind> kinds() {
     head >> kind.status >> kind.name;
     kind.others.assign(std::istream_iterator<std::string>(head), {});
     kind.command = listed.below_name();
-    kind.command.pop_back();  // the end of the last line
   }
   return all;
 }

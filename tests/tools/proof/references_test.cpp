@@ -5,7 +5,6 @@
 #include <iostream>
 #include <random>
 
-#include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "cradle/core/initial/ring.hpp"

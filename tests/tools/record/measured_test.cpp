@@ -7,8 +7,6 @@
 #include <cmath>
 #include <numbers>
 
-#include <fmt/format.h>
-
 #include "cradle/tests/tools/program.hpp"
 #include "cradle/tools/ensemble/layout.hpp"
 #include "cradle/tools/run/run.hpp"
@@ -192,11 +190,12 @@ pair_distribution = { every = 1, times = [3], distance = 20, bins = 8 }
   });
 }
 
-const std::string measured = "averages = { every = 0.2, bins = 7, range = [0, 4000] }\nhistograms = ['free_flight', "
+const std::string places = "[output]\nseries.points = 3\nstructure = { every = 2, times = [1, 7], waves = 20 }\n"
+                           "pair_distribution = { every = 2, times = [1, 7], distance = 3 }\n",
+                  measured = places +
+                             "averages = { every = 0.2, bins = 7, range = [0, 4000] }\nhistograms = ['free_flight', "
                              "'closing_speed', 'dissipative_closing_speed', 'collisions_per_particle', 'gap', "
-                             "'cluster']\ncounting = { from = 2, until = 7, every = 2.5, cluster_gap = 0.1 }\n"
-                             "structure = { every = 2, times = [1, 7], waves = 20 }\n"
-                             "pair_distribution = { every = 2, times = [1, 7], distance = 3 }\n";
+                             "'cluster']\ncounting = { from = 2, until = 7, every = 2.5, cluster_gap = 0.1 }\n";
 
 // With an account of either wall.
 std::string between_walls(int particles) {
@@ -208,12 +207,10 @@ std::string between_walls(int particles) {
 
 TEST_F(Measuring, HasTheSameBytesOnAnyNumberOfThreads) {
   const std::string ring = "initial = { type = 'ring', particles = 4000, perturbation = 0.2 }\nrun.until = 8\n";
-  write("dry.toml", "law = { type = 'inelastic', restitution = 0.95, cutoff = 0.1 }\n" + ring +
-                        "[output]\nseries.points "
-                        "= 3\ncorrelations = { every = 0.25, tag_every = 3 }\n" +
-                        measured);
-  write("wet.toml", "law = { type = 'wet', loss = 0.01 }\n" + ring + "[output]\nseries.points = 3\n" + measured);
-  write("walls.toml", between_walls(4000) + "[output]\nseries.points = 3\n" + measured);
+  write("dry.toml", "law = { type = 'inelastic', restitution = 0.95, cutoff = 0.1 }\n" + ring + measured +
+                        "correlations = { every = 0.25, tag_every = 3 }\n");
+  write("wet.toml", "law = { type = 'wet', loss = 0.01 }\n" + ring + measured);
+  write("walls.toml", between_walls(4000) + measured);
   for (const std::string scene : {"dry", "wet", "walls"})
     for (const std::string precision : {"double", "double-double"}) {
       SCOPED_TRACE(scene + " in " + precision);
@@ -231,15 +228,12 @@ TEST_F(Measuring, HasTheSameBytesOnAnyNumberOfThreads) {
 }
 
 TEST_F(Measuring, InEnsemblesHasTheSameBytesOnThreadsAndRanks) {
-  write("ring.toml", "law = { type = 'inelastic', restitution = 0.9, cutoff = 1e-3 }\ninitial = { type = 'ring', "
-                     "particles = 50, perturbation = 0.4 }\nrun.until = 8\n[output]\nseries.points = 3\n"
-                     "correlations.every = 0.25\n" +
-                         std::string("structure = { every = 2, times = [1, 7], waves = 20 }\npair_distribution = { "
-                                     "every = 2, times = [1, 7], distance = 3 }\n"));
-  write("gas.toml", between_walls(50) +
-                        "[output]\nseries.points = 3\ncorrelations.every = 0.25\nevery_replica = true\n"
-                        "snapshots = [4]\nprofiles = { times = [4], range = [0, 50] }\n" +
-                        measured);
+  write("ring.toml", "law = { type = 'inelastic', restitution = 0.9, cutoff = 1e-3 }\nrun.until = 8\n"
+                     "initial = { type = 'ring', particles = 50, perturbation = 0.4 }\n" +
+                         places + "correlations.every = 0.25\n");
+  write("gas.toml", between_walls(50) + measured +
+                        "correlations.every = 0.25\nevery_replica = true\nsnapshots = [4]\n"
+                        "profiles = { times = [4], range = [0, 50] }\n");
   for (const std::string scene : {"gas", "ring"}) {
     SCOPED_TRACE(scene);
     const std::string ensemble = "ensemble " + scene + ".toml --quiet --force";
@@ -251,10 +245,7 @@ TEST_F(Measuring, InEnsemblesHasTheSameBytesOnThreadsAndRanks) {
     expect_same("merged.h5", "whole.h5");
 #ifdef CRADLE_WITH_MPI
     if (shell("command -v mpirun").status == 0) {
-      shell("OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1 "
-            "OMPI_MCA_hwloc_base_binding_policy=none mpirun -n 2 cradle " +
-                ensemble + " --replicas 30 --threads 1 -o ranks.h5",
-            0);
+      shell(on_ranks(2, "cradle " + ensemble + " --replicas 30 --threads 1 -o ranks.h5"), 0);
       expect_same("1.h5", "ranks.h5");
     }
 #endif

@@ -4,8 +4,6 @@
 // Random scenes with floors, shaken walls, rows, lists and rings, with every collapse policy: CRADLE_ENDINGS=500 makes
 // it more.
 
-#include <fmt/format.h>
-
 #include <cmath>
 #include <cstdio>
 #include <random>

@@ -2,8 +2,6 @@
 // event-driven N-particle program (identical in double, binary128 and 100 digits), the three-particle collapse against
 // its closed form. (That two runs give the same bytes: tests/tools/run/outputs.txt.)
 
-#include <fmt/format.h>
-
 #include <cmath>
 #include <limits>
 

@@ -1,6 +1,5 @@
 // Ranges of times in place of lists, and the doubles nearest to their decimals. (These decimals, in files and on the
 // command line, are in values.txt, messages in tests/tools/messages.txt.)
-#include <fmt/format.h>
 
 #include "cradle/tests/core/rational.hpp"
 #include "cradle/tests/tools/program.hpp"

@@ -7,8 +7,6 @@
 #include <random>
 #include <utility>
 
-#include <fmt/format.h>
-
 #include "cradle/precision/scalars.hpp"
 #include "cradle/tests/core/rational.hpp"
 #include "cradle/tests/tools/program.hpp"

@@ -57,10 +57,7 @@ TEST(Difference, OfEachKindIsReportedWithItsPlace) {
       {[](Result& r) { r.attributes[2].second = std::nextafter(2.5, 3.); },
        "@energy: 2.5 against 2.5000000000000004 (1 ULPs, 1.8e-16 relative)"},
       {[](Result& r) { r.attributes.pop_back(); }, "@energy: only in A"},
-      {[](Result& r) {
-         r.attributes.push_back({"more", 1.});
-       },
-       "@more: only in B"},
+      {[](Result& r) { r.attributes.emplace_back("more", 1.); }, "@more: only in B"},
       {[](Result& r) { r.groups.pop_back(); }, "snapshots/0000: only in A"},
       {[](Result& r) {
          r.groups.push_back({"clusters", {}, {}});

@@ -47,13 +47,11 @@ TEST(DamagedRecords, AreRefused) {
   const tools::EnsembleState state("", scene, {});
   const auto replica = [&](std::uint64_t index, tools::RunEnd outcome = tools::RunEnd::reached) {
     tools::EnsembleRecord record;
-    tools::ReplicaRow row;
-    row.index = index, row.outcome = outcome;
-    state.put(record, row, std::vector<double>(state.layout().entries, 1.));
+    state.put(record, {.index = index, .outcome = outcome, .numbers = {}},
+              std::vector<double>(state.layout().entries, 1.));
     return record;
   };
-  EXPECT_NO_THROW(
-      tools::EnsembleState("", scene, {}).apply(tools::from_bytes<tools::EnsembleRecord>(tools::to_bytes(replica(0)))));
+  EXPECT_EQ(refused(replica(0)), "nothing was refused");
   EXPECT_TRUE(has(refused(replica(0, tools::RunEnd::undecided)), "no outcome of a replica"));
   EXPECT_TRUE(has(refused(replica(beyond)), "a replica beyond the last"));
   tools::EnsembleRecord failed;

@@ -134,14 +134,11 @@ TEST_F(Ensembles, ValuesAreCountedInBinsWhereRequested) {
 }
 
 TEST_F(Ensembles, FailedReplicasAreListedAndHarmNoOther) {
-  const Scene shocks = scene("shock.toml");
-  tools::EnsembleOptions options;
-  options.replicas = {0, 23};
-  options.progress = tools::ProgressLine::Show::never;
-  options.runner = run_or_fail;
+  tools::EnsembleOptions options{
+      .replicas = {0, 23}, .progress = tools::ProgressLine::Show::never, .runner = run_or_fail};
   for (const unsigned threads : {1U, 2U}) {
     options.threads = threads;
-    const auto end = tools::run_ensemble(shocks, options, path(fmt::format("failed-{}.h5", threads)));
+    const auto end = tools::run_ensemble(scene("shock.toml"), options, path(fmt::format("failed-{}.h5", threads)));
     EXPECT_EQ(end.status, Exit::lost);
     EXPECT_TRUE(has(end.warning, "replica 7 failed: "));
     EXPECT_EQ(end.outcome, "18 reached the end, 5 failed");
@@ -174,9 +171,9 @@ TEST_F(Ensembles, FailedReplicasAreListedAndHarmNoOther) {
 }
 
 TEST_F(Ensembles, AllReplicasMayFail) {
-  tools::EnsembleOptions options;
-  options.replicas = {0, 3};
-  options.runner = [](const Scene&, const tools::RunOptions&) -> RunOutcome { throw std::runtime_error("two\nlines"); };
+  const tools::EnsembleOptions options{
+      .replicas = {0, 3},
+      .runner = [](const Scene&, const tools::RunOptions&) -> RunOutcome { throw std::runtime_error("two\nlines"); }};
   EXPECT_EQ(tools::run_ensemble(scene("shock.toml"), options, path("none.h5")).status, Exit::lost);
   EXPECT_TRUE(std::isnan(numbers(read("none.h5"), "ensemble/series/energy", "mean")[0]));
   run("ensemble shock.toml --replicas 4 -o none.h5", 5);
@@ -184,9 +181,7 @@ TEST_F(Ensembles, AllReplicasMayFail) {
 
 TEST_F(Ensembles, NumbersOfWholeRunsAreColumnsOfTheTable) {
   // What run_scene reports in RunOutcome::summary, whatever it is, and energy, are there for every replica.
-  tools::EnsembleOptions options;
-  options.replicas = {0, 3};
-  tools::run_ensemble(scene("shock.toml"), options, path("a.h5"));
+  tools::run_ensemble(scene("shock.toml"), {.replicas = {0, 3}}, path("a.h5"));
   const Scene replica = tools::replica_scene(scene("shock.toml"), 1);
   const RunOutcome alone = tools::run_scene(replica, {tools::ProgressLine::Show::never});
   EXPECT_EQ(numbers(read("a.h5"), "replicas", "energy")[1], alone.energy);

@@ -94,8 +94,7 @@ class Ensembles : public ProgramTest {
   void expect_same_for_any_history(const std::string& command, std::uint64_t replicas) const {
     SCOPED_TRACE(command);
     const auto of = [&](std::uint64_t first, std::uint64_t end, const std::string& file, const std::string& more = "") {
-      run(command + " --first " + std::to_string(first) + " --replicas " + std::to_string(end - first) + " -o " + file +
-          more);
+      run(fmt::format("{} --first {} --replicas {} -o {}{}", command, first, end - first, file, more));
     };
     shell("rm -f *.h5", 0);
     of(0, replicas, "whole.h5", " --threads 1");
@@ -113,15 +112,11 @@ class Ensembles : public ProgramTest {
     for (const char* file : {"abc.h5", "cab.h5", "a.h5", "ca.h5"}) expect_same("whole.h5", file);
   }
 
+  // Of a column of real or of whole numbers.
   static std::vector<double> numbers(const Result& result, std::string_view group, std::string_view name) {
-    return std::visit(
-        [](const auto& v) -> std::vector<double> {
-          if constexpr (std::is_same_v<std::decay_t<decltype(v)>, std::vector<std::string>>)
-            return {};
-          else
-            return {v.begin(), v.end()};
-        },
-        column(result, group, name).values);
+    const tools::Numbers& values = column(result, group, name).values;
+    if (const auto* whole = std::get_if<std::vector<std::uint64_t>>(&values)) return {whole->begin(), whole->end()};
+    return std::get<std::vector<double>>(values);
   }
 };
 

@@ -14,9 +14,7 @@ int main(int, char** arguments) {
   try {
     Interrupt interrupt;
     const auto processes = make_processes(interrupt);
-    EnsembleOptions options;
-    options.replicas = {0, std::stoull(arguments[2])};
-    options.runner = cradle::tests::run_or_fail;
+    const EnsembleOptions options{.replicas = {0, std::stoull(arguments[2])}, .runner = cradle::tests::run_or_fail};
     const EnsembleOutcome end = run_study(ensemble_of(read_scene(arguments[1])), options, arguments[3], *processes);
     fmt::print("{}\n", end.outcome);
     return static_cast<int>(end.status);

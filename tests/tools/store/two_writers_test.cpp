@@ -11,17 +11,15 @@ namespace cradle::tests::two_writers_test {
 TEST_F(Ensembles, SecondOfTwoThatBeginAfreshIsRefused) {
   run("ensemble shock.toml --replicas 8 -o whole.h5");
   Printed second{-1, "", ""};
-  tools::EnsembleOptions options;
-  options.replicas = {0, 4};
-  options.threads = 1;
-  options.progress = tools::ProgressLine::Show::never;
-  options.runner = [&](const Scene& replica, const tools::RunOptions& how) {
+  const auto runner = [&](const Scene& replica, const tools::RunOptions& how) {
     if (second.status == -1) {
       EXPECT_FALSE(exists("a.h5"));
       second = shell("cradle ensemble shock.toml --first 4 --replicas 4 -o a.h5");
     }
     return tools::run_scene(replica, how);
   };
+  const tools::EnsembleOptions options{
+      .replicas = {0, 4}, .threads = 1, .progress = tools::ProgressLine::Show::never, .runner = runner};
   EXPECT_EQ(tools::run_ensemble(scene("shock.toml"), options, path("a.h5")).status, Exit::done);
   EXPECT_EQ(second.status, 4);
   EXPECT_TRUE(begins(second.err, "cradle: a.h5: another program is writing this file (found process "));

@@ -50,16 +50,15 @@ output.series = {points = 4}
 output.snapshots = [5, 10]
 )";
 
+const Plant no_plant = [](RunSample&) {};
+
 Certified certified(
-    const std::string& toml, const Plant& plant, const PlantInFile& in_file = [](Result&) {},
+    const std::string& toml, const Plant& plant = no_plant, const PlantInFile& in_file = [](Result&) {},
     const std::vector<unsigned>& tried = {31}) {
-  CertifyOptions how;
-  how.digits = tried;
-  how.progress = Progress::Show::never;
-  how.make = [&](const Scene& scene, unsigned digits) {
+  const auto make = [&](const Scene& scene, unsigned digits) {
     return std::make_unique<Tampered>(certifier(scene, digits), plant, in_file);
   };
-  return certify(parse_scene(toml, "shock", {}), how);
+  return certify(parse_scene(toml, "shock"), {.digits = tried, .progress = Progress::Show::never, .make = make});
 }
 
 const char* const between_walls = R"(
@@ -76,7 +75,7 @@ std::string moved(const std::string& number, double by) {
 }
 
 TEST(Agreement, OfAProofAndItsRun) {
-  const Certified run = certified(shock, [](RunSample&) {});
+  const Certified run = certified(shock);
   EXPECT_TRUE(run.proved());
   EXPECT_EQ(run.attempts.size(), 1U);
   EXPECT_GT(run.certificate.collisions, 50U);
@@ -107,7 +106,7 @@ Plant another_index(ParticleIndex index) {
 }
 
 TEST(Agreement, WhateverIsPlantedIsFoundAndNamed) {
-  EXPECT_TRUE(certified(between_walls, [](RunSample&) {}).proved());
+  EXPECT_TRUE(certified(between_walls).proved());
   const struct {
     const char *scene, *quantity;
     Plant plant;
@@ -153,7 +152,7 @@ TEST(Agreement, WhateverIsPlantedInTheFileIsFoundAndNamed) {
   std::set<std::string> found;
   for (const std::string& scene : scenes) {
     std::vector<std::string> columns;
-    const Certified run = certified(scene, [](RunSample&) {});
+    const Certified run = certified(scene);
     ASSERT_TRUE(run.proved()) << scene;
     for (const Group& group : run.outcome.result.groups)
       for (const Column& column : group.columns)
@@ -166,10 +165,7 @@ TEST(Agreement, WhateverIsPlantedInTheFileIsFoundAndNamed) {
             if (group.name + '/' + column.name == path)
               for (double& number : std::get<std::vector<double>>(column.values)) number += 1e-10;
       };
-      const std::string message = cradle::tests::refusal(Exit::lost, [&] {
-        certified(
-            scene, [](RunSample&) {}, plant);
-      });
+      const std::string message = cradle::tests::refusal(Exit::lost, [&] { certified(scene, no_plant, plant); });
       if (has(message, " of /" + path)) found.insert(path);
     }
   }
@@ -186,8 +182,7 @@ TEST(Agreement, WhateverIsPlantedInTheFileIsFoundAndNamed) {
 TEST(Agreement, SmallGapsFarFromTheOriginAreWhatIsProved) {
   const Certified run = certified("law = {type = 'inelastic', restitution = 0.5}\ninitial = {type = 'list', x = [999, "
                                   "1000, 1000.0000000000001], v = [1, 0, 0]}\nrun.until = 3\noutput = {events = true, "
-                                  "snapshots = [0]}\n",
-                                  [](RunSample&) {});
+                                  "snapshots = [0]}\n");
   ASSERT_TRUE(run.proved());
   EXPECT_EQ(cradle::tests::numbers(run.outcome.result, "snapshots/0000", "gap")[1], 1e-13);
   EXPECT_EQ(run.attempts.size(), 1U);
@@ -201,7 +196,7 @@ TEST(Agreement, TheFileHasTheProvedNumbers) {
       "0.0000000000000000853, 0.1990747710000000853, 0.4590747710000000853, 0.45907477100000009127], v = [-7.8265, "
       "0.886283085324021, 0.0251437835, 6.5937, 0.2], m = [0.0871, 43.0, 3.42, 6.87, 62.7]}\nrun.until = 7\noutput = "
       "{events = true, snapshots = [7]}\n",
-      [](RunSample&) {}, [](Result&) {}, cradle::tools::rising_digits());
+      no_plant, [](Result&) {}, rising_digits());
   ASSERT_TRUE(run.proved());
   const Result result = certified_result(run);
   for (const std::string name : {"gap", "closing_speed"}) {
@@ -227,7 +222,7 @@ TEST(Agreement, AnErrorOfARunInDoubleAsksForAWiderOne) {
 
 TEST(Agreement, ARunThatEndsBeforeItsTimeIsProvedUpToThere) {
   Certified run;
-  run.scene = parse_scene(shock, "shock", {});
+  run.scene = parse_scene(shock, "shock");
   run.certificate.collisions = 7;
   run.certificate.samples.push_back({});
   run.certificate.samples.back().time_text = "3.25";

@@ -492,8 +492,7 @@ template <class T> struct Comparison {
 
 void compare(const Drawn& drawn, Tally& tally) {
   ++tally.scenes;
-  CertifyOptions how;
-  how.progress = Progress::Show::never;
+  CertifyOptions how{.progress = Progress::Show::never};
   // The reference of scenes with roots has 100 digits.
   std::erase_if(how.digits, [&](unsigned digits) { return digits > (drawn.roots ? 50U : 100U); });
   try {
@@ -560,9 +559,7 @@ TEST(Certificates, OfReplicasHoldWhatRationalsGive) {
     Drawn drawn = draw_ring(random);
     while (drawn.roots) drawn = draw_ring(random);
     SCOPED_TRACE("seed " + std::to_string(seed) + "\n" + effective_toml(drawn.scene));
-    CertifyOptions how;
-    how.progress = Progress::Show::never;
-    const CertifiedReplicas all = certify_replicas(drawn.scene, 3, 1, how);
+    const CertifiedReplicas all = certify_replicas(drawn.scene, 3, 1, {.progress = Progress::Show::never});
     for (const CertifiedReplica& replica : all.replicas) {
       Scene scene = drawn.scene;
       scene.initial.replica = replica.index;

@@ -27,11 +27,14 @@ class Journal : public ProgramTest {
     JournalWriter writer(path(), header());
     for (const auto* record : {"first", "", "the third one"}) writer.append(record);
   }
-  std::vector<std::string> records() const {
-    JournalReader reader(path());
+  static std::vector<std::string> rest_of(JournalReader& reader) {
     std::vector<std::string> all;
     for (std::string record; reader.next(record);) all.push_back(record);
     return all;
+  }
+  std::vector<std::string> records() const {
+    JournalReader reader(path());
+    return rest_of(reader);
   }
 };
 
@@ -41,8 +44,7 @@ TEST_F(Journal, GivesBackWhatWasAppended) {
   write_three();
   EXPECT_EQ(tools::to_bytes(JournalReader(path()).header()), tools::to_bytes(header()));
   EXPECT_EQ(records(), three);
-  JournalWriter again(path(), std::filesystem::file_size(path()));
-  again.append("fourth");
+  JournalWriter(path(), std::filesystem::file_size(path())).append("fourth");
   EXPECT_EQ(records().back(), "fourth");
 }
 
@@ -58,18 +60,14 @@ TEST_F(Journal, CutAnywhereGivesTheWholeRecordsBeforeTheCut) {
       continue;
     }
     JournalReader reader(path());
-    std::vector<std::string> found;
-    for (std::string record; reader.next(record);) found.push_back(record);
+    std::vector<std::string> found = rest_of(reader);
     ASSERT_LE(found.size(), 2U) << size;
     EXPECT_TRUE(std::equal(found.begin(), found.end(), three.begin())) << size;
     EXPECT_GE(found.size(), at_least) << size;
     at_least = found.size();
     EXPECT_EQ(reader.whole_bytes() + reader.torn_bytes(), size);
     // Whoever continues cuts off what is torn.
-    {
-      JournalWriter writer(path(), reader.whole_bytes());
-      writer.append("more");
-    }
+    JournalWriter(path(), reader.whole_bytes()).append("more");
     found.emplace_back("more");
     EXPECT_EQ(records(), found) << size;
   }

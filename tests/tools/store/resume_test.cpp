@@ -48,8 +48,6 @@ std::vector<CutRun> cut_runs() {
 
 class Resuming : public ProgramTest {
  protected:
-  std::string file(const std::string& name) const { return path(name); }
-
   // Returns how it ended; FILE is there if it did.
   static RunOutcome run(RunFiles& files, Stopping::At at, std::size_t threads) {
     Interrupt interrupt;
@@ -60,18 +58,18 @@ class Resuming : public ProgramTest {
   }
 
   RunOutcome begin(const char* name, const Scene& scene, Stopping::At at, std::size_t threads) const {
-    RunFiles files(file(name), scene);
+    RunFiles files(path(name), scene);
     return run(files, at, threads);
   }
   RunOutcome resume(const char* name, const std::optional<std::string>& until, Stopping::At at,
                     std::size_t threads) const {
-    RunFiles files(file(name), until);
+    RunFiles files(path(name), until);
     return run(files, at, threads);
   }
   // The bytes are those of the file's own scene, run from the beginning.
   void expect_as_in_one_go(const char* name) const {
-    begin("alone.h5", scene_in(read_result(file(name)).attributes, file(name)), {}, 1);
-    EXPECT_TRUE(contents(file("alone.h5")) == contents(file(name))) << "other bytes";
+    begin("alone.h5", scene_in(read_result(path(name)).attributes, path(name)), {}, 1);
+    EXPECT_TRUE(contents(path("alone.h5")) == contents(path(name))) << "other bytes";
   }
 };
 
@@ -90,7 +88,7 @@ TEST_P(Resume, EndsInTheSameBytesWhereverItIsCut) {
       continue;
     }
     const RunOutcome whole = begin("alone.h5", scene, {}, of.threads_later);
-    const std::string wanted = contents(file("alone.h5"));
+    const std::string wanted = contents(path("alone.h5"));
     ASSERT_GT(whole.collisions, 4U);
     for (const Stopping::At at : {Stopping::At{.collisions = 1},
                                   {.collisions = whole.collisions / 3},
@@ -99,15 +97,15 @@ TEST_P(Resume, EndsInTheSameBytesWhereverItIsCut) {
       SCOPED_TRACE(testing::Message() << "collisions " << at.collisions << ", looks " << at.checks);
       const RunOutcome cut = begin("cut.h5", scene, at, of.threads);
       if (cut.end == RunEnd::interrupted) {
-        EXPECT_FALSE(std::filesystem::exists(file("cut.h5")));
+        EXPECT_FALSE(exists("cut.h5"));
         const Stopping::At half{.collisions = cut.collisions + (whole.collisions - cut.collisions) / 2};
         if (resume("cut.h5", std::nullopt, half, of.threads_later).end == RunEnd::interrupted) {
           EXPECT_EQ(resume("cut.h5", std::nullopt, {}, of.threads_later).end, whole.end);
         }
       }
-      EXPECT_TRUE(contents(file("cut.h5")) == wanted) << "other bytes";
-      EXPECT_FALSE(std::filesystem::exists(file("cut.h5.part")));
-      std::filesystem::remove(file("cut.h5"));
+      EXPECT_TRUE(contents(path("cut.h5")) == wanted) << "other bytes";
+      EXPECT_FALSE(exists("cut.h5.part"));
+      std::filesystem::remove(path("cut.h5"));
     }
   }
 }
@@ -150,9 +148,9 @@ TEST_F(Resuming, ALaterEndGivesTheBytesOfASceneThatHadItFromTheBeginning) {
         }
         ASSERT_EQ(resume("later.h5", "60", {}, 1).end, RunEnd::reached);
 
-        EXPECT_EQ(scene_in(read_result(file("later.h5")).attributes, "later.h5").run.until, Decimal("60"));
+        EXPECT_EQ(scene_in(read_result(path("later.h5")).attributes, "later.h5").run.until, Decimal("60"));
         expect_as_in_one_go("later.h5");
-        std::filesystem::remove(file("later.h5"));
+        std::filesystem::remove(path("later.h5"));
       }
     }
   }
@@ -162,8 +160,8 @@ TEST_F(Resuming, ALaterEndGivesTheBytesOfASceneThatHadItFromTheBeginning) {
 TEST_F(Resuming, WithoutACheckpointALaterEndIsRunFromTheStart) {
   const Scene scene = dry_rows("output.checkpoint.every_seconds=0");
   begin("a.h5", scene, {}, 1);
-  std::filesystem::remove(file("a.h5.checkpoint"));  // of a machine so slow that the run took two seconds
-  EXPECT_EQ(RunFiles(file("a.h5"), "120").resumed_from(), "");
+  std::filesystem::remove(path("a.h5.checkpoint"));  // of a machine so slow that the run took two seconds
+  EXPECT_EQ(RunFiles(path("a.h5"), "120").resumed_from(), "");
   ASSERT_EQ(resume("a.h5", "120", {}, 1).end, RunEnd::reached);
   expect_as_in_one_go("a.h5");
 }
@@ -172,10 +170,10 @@ TEST_F(Resuming, WithoutACheckpointALaterEndIsRunFromTheStart) {
 TEST_F(Resuming, AnExtensionStoppedBeforeItsFirstCheckpointBeginsAgain) {
   const Scene scene = dry_rows();
   begin("a.h5", scene, {}, 1);
-  const std::string checkpoint = contents(file("a.h5.checkpoint"));
+  const std::string checkpoint = contents(path("a.h5.checkpoint"));
   ASSERT_EQ(resume("a.h5", "120", {.checks = 2}, 1).end, RunEnd::interrupted);
-  { std::ofstream(file("a.h5.checkpoint"), std::ios::binary) << checkpoint; }  // as a kill before it was written
-  EXPECT_NE(RunFiles(file("a.h5"), std::nullopt).resumed_from(), "");
+  { std::ofstream(path("a.h5.checkpoint"), std::ios::binary) << checkpoint; }  // as a kill before it was written
+  EXPECT_NE(RunFiles(path("a.h5"), std::nullopt).resumed_from(), "");
   ASSERT_EQ(resume("a.h5", std::nullopt, {}, 1).end, RunEnd::reached);
   expect_as_in_one_go("a.h5");
 }
@@ -185,18 +183,18 @@ TEST_F(Resuming, ARunThatHasNothingToLoseWritesItsFileAlone) {
   for (const char* every : {"0", "1e-9"}) {
     const Scene scene = dry_rows(std::string("output.checkpoint.every_seconds=") + every);
     const std::string name = std::string("a") + every + ".h5";
-    RunFiles files(file(name), scene);
+    RunFiles files(path(name), scene);
     Interrupt interrupt;
     Unwritten sink(files, interrupt, {});
     run_scene(scene, {Progress::Show::never, nullptr, &interrupt}, sink);
-    EXPECT_EQ(std::filesystem::exists(file(name + ".part")), files.up_to_date());
+    EXPECT_EQ(exists(name + ".part"), files.up_to_date());
     if (*every == '1') {
       EXPECT_TRUE(files.up_to_date());
     }
     sink.write(files);
-    EXPECT_FALSE(std::filesystem::exists(file(name + ".part")));
+    EXPECT_FALSE(exists(name + ".part"));
   }
-  EXPECT_TRUE(contents(file("a0.h5")) == contents(file("a1e-9.h5"))) << "other bytes";
+  EXPECT_TRUE(contents(path("a0.h5")) == contents(path("a1e-9.h5"))) << "other bytes";
 }
 
 // What is tabled at the end is of the whole run: of a longer one it is made anew.
@@ -215,12 +213,12 @@ TEST_F(Resuming, TheWordOfALongerRunIsWrittenOnce) {
 TEST_F(Resuming, WhatIsNotWrittenYetIsWrittenFirst) {
   const Scene scene = dry_rows();
   {
-    RunFiles files(file("a.h5"), scene);
+    RunFiles files(path("a.h5"), scene);
     Interrupt interrupt;
     Unwritten sink(files, interrupt, {});
     run_scene(scene, {Progress::Show::never, nullptr, &interrupt}, sink);  // and then the machine stops
   }
-  EXPECT_THROW(RunFiles(file("a.h5"), "200"), Error);
+  EXPECT_THROW(RunFiles(path("a.h5"), "200"), Error);
   EXPECT_EQ(resume("a.h5", std::nullopt, {}, 1).end, RunEnd::reached);
   EXPECT_EQ(resume("a.h5", "120", {}, 1).end, RunEnd::reached);
 }

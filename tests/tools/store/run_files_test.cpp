@@ -128,13 +128,7 @@ TEST_F(Files, ARunThatIsNotFinishedIsNotThrownAwayByAnother) {
   Scene same = parse_scene(header().scene, "s.toml");
   same.output.checkpoint.every_seconds = Decimal("1");  // changes no result, and is not in the journal
   for (const double seconds : {3.0, 3600.0}) {
-    {
-      JournalWriter journal(path("a.h5.part"), header());
-      RunStatus status;
-      status.seconds = seconds;
-      status.time = 5;
-      journal.append(to_bytes(RunRecord(status)));
-    }
+    JournalWriter(path("a.h5.part"), header()).append(to_bytes(RunRecord(RunStatus{.seconds = seconds, .time = 5})));
     const std::string before = contents(folder / "a.h5.part");
     const Printed other = shell(run + "-o a.h5", 2);
     EXPECT_TRUE(has(other.err, "a run of other settings that is not finished (found t = 5, ")) << other.err;
@@ -201,14 +195,10 @@ TEST_F(Files, PiecesMakeTheFileThatAllAtOnceMakes) {
   EXPECT_EQ(std::get<std::vector<double>>(outline.find("series")->columns[0].values), (std::vector<double>{0, 4949}));
   const auto write = [&](const char* name) {
     write_in_pieces(
-        outline,
-        [&](const auto& put) {
-          for (const Group& piece : pieces) put(piece);
-        },
-        path(name));
+        outline, [&](const auto& put) { std::ranges::for_each(pieces, put); }, path(name));
   };
   write("pieces.h5");
-  std::stable_sort(pieces.begin(), pieces.end(), [](const Group& a, const Group& b) { return a.name > b.name; });
+  std::ranges::stable_sort(pieces, std::greater(), &Group::name);
   write("otherwise.h5");
   {
     const SmallFiles full;

@@ -109,36 +109,29 @@ TEST(InitialGaps, OfListsAreDifferencesOfDecimalsInEveryType) {
 TEST(InitialGaps, ToWallsAndAcrossTheSeamOfRingsAreDifferencesOfDecimals) {
   in_every_type([](auto type, const std::string& run) {
     using T = typename decltype(type)::type;
-    const auto gap = [&](const std::string& scene, ParticleIndex particle) {
-      return initial_particles<T>(
-                 parse_scene("law = { type = 'inelastic', restitution = 0.5 }\n" + scene + run, "s.toml"))
-          ->gap(particle);
+    const auto expect = [&](ParticleIndex particle, const char* gap, const std::string& scene) {
+      const std::string text = "law = { type = 'inelastic', restitution = 0.5 }\n" + scene + run;
+      EXPECT_TRUE(rounded_once(initial_particles<T>(parse_scene(text, "s.toml"))->gap(particle), exact(gap))) << text;
     };
     const std::string list = "initial = { type = 'list', x = [1000000000.000001, 1000000007], v = [0, 0]",
                       walls = "walls = { left = { position = 1e9 }, right = { position = 1000000007.0000000003 } }\n";
-    EXPECT_TRUE(rounded_once(gap(list + " }\n" + walls, -1), exact("1e-6")));
-    EXPECT_TRUE(rounded_once(gap(list + " }\n" + walls, 1), exact("3e-10")));
-    EXPECT_TRUE(rounded_once(gap(list + ", length = 7 }\n", 1), exact("1e-6")));
+    expect(-1, "1e-6", list + " }\n" + walls);
+    expect(1, "3e-10", list + " }\n" + walls);
+    expect(1, "1e-6", list + ", length = 7 }\n");
     // Rows: the outermost particles are 999.5 spacings of 0.1, and 499.5 of 1/3, from the origin.
-    EXPECT_TRUE(rounded_once(gap("initial = { type = 'rows', particles = 2000, spacing = 0.1 }\n"
-                                 "walls = { left = { position = -99.9500000000003 } }\n",
-                                 -1),
-                             exact("3e-13")));
-    EXPECT_TRUE(rounded_once(gap("initial.left = { particles = 5, speed = 1, density = 7 }\n"
-                                 "initial.right = { particles = 500, speed = 0, density = 3 }\ninitial.type = 'rows'\n"
-                                 "walls.right.position = 166.50000000000000001\n",
-                                 504),
-                             exact("1e-17")));
+    expect(-1, "3e-13",
+           "initial = { type = 'rows', particles = 2000, spacing = 0.1 }\nwalls.left.position = -99.9500000000003\n");
+    expect(
+        504, "1e-17",
+        "initial.left = { particles = 5, speed = 1, density = 7 }\ninitial.type = 'rows'\n"
+        "initial.right = { particles = 500, speed = 0, density = 3 }\nwalls.right.position = 166.50000000000000001\n");
     // A cold gas begins at the hot particle; a gas has its first particle half a cell from its wall.
-    EXPECT_TRUE(rounded_once(gap("initial = { type = 'cold', particles = 1001, spacing = 0.1, place = 'left' }\n"
-                                 "walls.right.position = 100.0000000000007\n",
-                                 1000),
-                             exact("7e-13")));
-    EXPECT_TRUE(
-        rounded_once(gap("initial = { type = 'gas', particles = 8 }\nwalls = { left = { position = 1e12 }, right "
-                         "= { position = 1000000000000.000016 } }\n",
-                         -1),
-                     exact("1e-6")));
+    expect(1000, "7e-13",
+           "initial = { type = 'cold', particles = 1001, spacing = 0.1, place = 'left' }\n"
+           "walls.right.position = 100.0000000000007\n");
+    expect(-1, "1e-6",
+           "initial = { type = 'gas', particles = 8 }\n"
+           "walls = { left.position = 1e12, right.position = 1000000000000.000016 }\n");
   });
 }
 

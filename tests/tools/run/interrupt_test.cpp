@@ -66,8 +66,7 @@ TEST(Interrupts, EndWalksOverRows) {
         tools::run_scene(tools::parse_scene(scene, "s.toml"), {tools::Progress::Show::never, nullptr, &interrupt});
     sender.join();
     EXPECT_EQ(run.end, RunEnd::interrupted) << scene;
-    const auto* profiles = run.result.find("profiles/0000");
-    EXPECT_EQ(profiles, nullptr) << "of a part of the particles";
+    EXPECT_EQ(run.result.find("profiles/0000"), nullptr) << "of a part of the particles";
   }
 }
 
@@ -80,8 +79,6 @@ class HangUpsNotIgnored {
     if (before_.sa_handler == SIG_IGN) std::signal(SIGHUP, [](int) {});
   }
   ~HangUpsNotIgnored() { ::sigaction(SIGHUP, &before_, nullptr); }
-  HangUpsNotIgnored(const HangUpsNotIgnored&) = delete;
-  HangUpsNotIgnored& operator=(const HangUpsNotIgnored&) = delete;
 
  private:
   struct sigaction before_ = {};
@@ -103,8 +100,7 @@ TEST_F(Signals, KeepWhatARunHas) {
     const Printed state = shell("cradle info long.h5.checkpoint", 0);
     EXPECT_FALSE(has(state.out, " 0 collisions"));
     shell("cradle info long.h5.part", 0);
-    std::filesystem::remove(folder / "long.h5.part");
-    std::filesystem::remove(folder / "long.h5.checkpoint");
+    shell("rm long.h5.part long.h5.checkpoint", 0);
   }
 }
 

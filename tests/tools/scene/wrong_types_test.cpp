@@ -17,9 +17,9 @@ std::string text_of(const Assignments& scene) {
 
 Scene parse(const Assignments& scene) { return parse_scene(text_of(scene), "s.toml"); }
 
-Assignments with(Assignments scene, const Assignments& more) {
-  for (const auto& [key, value] : more) scene.insert_or_assign(key, value);
-  return scene;
+Assignments with(const Assignments& scene, Assignments more) {
+  more.insert(scene.begin(), scene.end());
+  return more;
 }
 
 // Scenes that together have every row of the table.
@@ -42,8 +42,7 @@ Assignments with_value(Assignments scene, const std::string& key, const std::str
 }
 
 void expect_place(const std::string& message, const Assignments& scene, const std::string& key) {
-  std::size_t line = 1;
-  for (auto entry = scene.begin(); entry != scene.end() && entry->first != key; ++entry) ++line;
+  const auto line = 1 + std::distance(scene.begin(), scene.find(key));
   // A message on one of the keys of a table names this one.
   const std::regex place("^s\\.toml:" + std::to_string(line) + ": " + key + "[.a-z_]*: [^:]+: .+");
   EXPECT_TRUE(std::regex_search(message, place)) << message;

@@ -56,16 +56,14 @@ TEST_F(ResultFiles, EndsOfColumnsAreEnoughToListWhatIsThere) {
 }
 
 TEST_F(ResultFiles, AnyChangedByteIsDetected) {
-  const std::string whole = contents(folder / "a.h5");
+  const std::string whole = contents(folder / "a.h5"),
+                    damaged = path("a.h5") + ": damaged (found its bytes are not those that were written): take it "
+                                             "from a copy, or make it anew";
   for (std::size_t at = 0; at < whole.size() - tools::seal_size; at += 97) {
     std::string changed = whole;
     changed[at] = static_cast<char>(changed[at] ^ 1);
     write("a.h5", changed);
-    EXPECT_EQ(refusal(tools::Exit::io, [&] { read("a.h5"); }),
-              path("a.h5") +
-                  ": damaged (found its bytes are not those that were written): take it from a copy, or make "
-                  "it anew")
-        << at;
+    EXPECT_EQ(refusal(tools::Exit::io, [&] { read("a.h5"); }), damaged) << at;
   }
 }
 

@@ -144,8 +144,7 @@ TEST(WetPredictions, OfClustersAreThoseOfTheZone) {
 
 TEST(StickyPredictions, EqualRowsFeedOneClusterAtTheCentre) {
   // l = 1, u0 = 1/2: mass 2 u0 t/l = t, energy E(0) - u0^3 t/l, up to t = N l/(2 u0) = 8000, where all is one
-  const Scene scene = parse_scene("law.type = 'sticky'\ninitial.type = 'rows'\nrun.until = 16000\n", "s.toml");
-  const auto rows = predictions(scene);
+  const auto rows = predictions(parse_scene("law.type = 'sticky'\ninitial.type = 'rows'\nrun.until = 16000", "s.toml"));
   EXPECT_EQ(*number(rows, "initial_energy", "continuous"), 1000);
   EXPECT_EQ(*number(rows, "central_mass_growth", "continuous"), 1);
   EXPECT_EQ(*number(rows, "central_velocity", "continuous"), 0);
@@ -161,15 +160,10 @@ TEST(StickyPredictions, EqualRowsFeedOneClusterAtTheCentre) {
 
 TEST(StickyPredictions, UnequalRowsMoveIt) {
   // densities 4 and 1 at 1 and -1/2: mass sqrt(4) 3/2 per time, velocity (2 1 - 1 1/2)/3 (validation table, section 3)
-  const auto rows = predictions(parse_scene(R"(law.type = 'sticky'
-[initial]
-type = 'rows'
-left = { particles = 100, speed = 1, density = 4 }
-right = { particles = 100, speed = -0.5, density = 1 }
-[run]
-until = 10
-)",
-                                            "s.toml"));
+  const std::string scene = "law.type = 'sticky'\nrun.until = 10\ninitial.type = 'rows'\n"
+                            "initial.left = { particles = 100, speed = 1, density = 4 }\n"
+                            "initial.right = { particles = 100, speed = -0.5, density = 1 }\n";
+  const auto rows = predictions(parse_scene(scene, "s.toml"));
   EXPECT_NEAR(*number(rows, "central_mass_growth", "continuous"), 3, 1e-15);
   EXPECT_NEAR(*number(rows, "central_velocity", "continuous"), 0.5, 1e-15);
   EXPECT_EQ(*number(rows, "initial_energy", "continuous"), 50 + 12.5);
@@ -178,8 +172,7 @@ until = 10
 }
 
 TEST(StickyPredictions, SayNothingOfOtherStarts) {
-  EXPECT_TRUE(
-      predictions(parse_scene("law.type = 'sticky'\ninitial.type = 'ring'\nrun.until = 1\n", "s.toml")).empty());
+  EXPECT_TRUE(predictions(parse_scene("law.type = 'sticky'\ninitial.type = 'ring'\nrun.until = 1", "s.toml")).empty());
 }
 
 TEST(Misprints, FitTheLaw) {

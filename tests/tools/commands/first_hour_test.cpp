@@ -34,8 +34,7 @@ TEST_F(FirstHour, NewSceneListsEveryKeyThatItCouldUse) {
   tools::Scene scene = tools::read_scene(path("shock.toml"), {});
   for (const tools::Field& field : tools::scene_fields()) {
     if (!field.when->holds(scene)) continue;
-    const std::string printed = "# " + std::string(field.doc) + " (" + facts(field) + ")\n";
-    EXPECT_TRUE(has(text, printed)) << field.key;
+    EXPECT_TRUE(has(text, fmt::format("# {} ({})\n", field.doc, facts(field)))) << field.key;
   }
   shell("cradle run shock.toml --quiet", 0);
 }

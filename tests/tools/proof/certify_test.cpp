@@ -156,7 +156,6 @@ TEST_F(Certified, SnapshotsHaveTheNumbersOfTheRuns) {
                 "run.until = 3\noutput.snapshots = [1, 2]\n");
   const Result r = result();
   EXPECT_EQ(r.find("certificate/snapshots/0000"), nullptr);
-  ASSERT_NE(r.find("certificate/snapshots/0001"), nullptr);
   EXPECT_NEAR(numbers(r, "certificate/snapshots/0001", "x_low")[1], numbers(r, "snapshots/0001", "x")[1], 1e-15);
 }
 

@@ -18,9 +18,8 @@ class FullDisk : public ProgramTest {
 };
 
 constexpr const char* too_large =
-    "cradle run fig2 --quiet --force --set initial.particles=4000 --set run.until=20 --set "
-    "output.snapshots=[5,10,15,20] --set output.events=true "
-    "--set output.checkpoint.every_seconds=1e-9 -o a.h5";
+    "cradle run fig2 --quiet --force --set initial.particles=4000 --set run.until=20 --set output.events=true "
+    "--set output.snapshots=[5,10,15,20] --set output.checkpoint.every_seconds=1e-9 -o a.h5";
 
 TEST_F(FullDisk, RunKeepsItsResultElsewhere) {
   const Printed run = on_small_disk("echo old > a.h5; mkdir $HERE/tmp; export TMPDIR=$HERE/tmp; " +

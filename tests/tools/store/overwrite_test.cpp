@@ -37,7 +37,7 @@ class Overwriting : public ProgramTest {
 
 TEST_F(Overwriting, EveryCommandThatComputesReplacesOnlyItsOwnResult) {
   struct Case {
-    const char *command, *file, *changed, *found;
+    std::string command, file, changed, found;
   };
   for (const auto& [command, file, changed, found] :
        {Case{"run s.toml", "s.h5", "run s.toml --set run.until=3 --set output.snapshots=[]", "run.until = 4, here 3"},
@@ -53,19 +53,19 @@ TEST_F(Overwriting, EveryCommandThatComputesReplacesOnlyItsOwnResult) {
              "law.restitution = 0.9, here 0.8"},
         Case{"sweep s.toml --vary law.cutoff=0,1", "s-sweep.h5", "sweep s.toml --vary law.cutoff=0,2", "found "}}) {
     std::filesystem::remove(folder / file);
-    shell(std::string("cradle ") + command, 0);
+    shell("cradle " + command, 0);
     const std::string first = contents(folder / file);
-    EXPECT_EQ(shell(std::string("cradle ") + command, 0).err, "");
+    EXPECT_EQ(shell("cradle " + command, 0).err, "");
     EXPECT_TRUE(contents(folder / file) == first) << command;
     refused_and_forced(changed, file, found);
   }
 }
 
 TEST_F(Overwriting, AFileThatIsNoResultStays) {
-  for (const char* command :
+  for (const std::string command :
        {"run s.toml", "certify s.toml", "trust s.toml --digits 16,31", "words 3 ab --digits 10"}) {
     write("notes.txt", "mine");
-    refused_and_forced(std::string(command) + " -o notes.txt", "notes.txt", "not a result");
+    refused_and_forced(command + " -o notes.txt", "notes.txt", "not a result");
   }
   write("s.h5", "");  // nothing in it to lose
   shell("cradle run s.toml", 0);
@@ -111,13 +111,12 @@ TEST_F(Overwriting, AForcedEnsembleCanBeResumed) {
 
 TEST_F(Overwriting, PicturesAndPagesOfOtherFilesStay) {
   shell("cradle run s.toml && cp s.h5 t.h5", 0);
-  for (const char* command : {"plot", "report"}) {
-    const std::string file = std::string("out.") + (std::string(command) == "plot" ? "png" : "html");
+  for (const auto& [command, file] : {std::pair<std::string, std::string>("plot", "out.png"), {"report", "out.html"}}) {
     write(file, "mine");
-    refused_and_forced(std::string(command) + " s.h5 -o " + file, file, "not what `cradle " + std::string(command));
+    refused_and_forced(command + " s.h5 -o " + file, file, "not what `cradle " + command);
     shell("cradle run s.toml -o s.h5 --force --set law.restitution=0.8", 0);
-    shell(std::string("cradle ") + command + " s.h5 -o " + file, 0);  // of the same file, which has changed
-    refused_and_forced(std::string(command) + " t.h5 -o " + file, file, "t.h5` makes again");
+    shell("cradle " + command + " s.h5 -o " + file, 0);  // of the same file, which has changed
+    refused_and_forced(command + " t.h5 -o " + file, file, "t.h5` makes again");
     shell("cp t.h5 s.h5", 0);
   }
 }

@@ -32,10 +32,9 @@ class Failures : public Ensembles {
     const auto& messages = attribute<std::string>(result.find(below("replicas/failed"))->attributes, "messages", file);
     EXPECT_TRUE(begins(messages, "replica " + std::to_string(first) + ": order of collisions lost"));
 
-    std::smatch command;
-    ASSERT_TRUE(std::regex_search(made.err, command, std::regex("the first of them again, alone: ([^\n]*)")))
-        << made.err;
-    const Printed alone = shell(command[1], 5);
+    const auto commands = matches(made.err, "the first of them again, alone: ([^\n]*)");
+    ASSERT_EQ(commands.size(), 1U) << made.err;
+    const Printed alone = shell(*commands.begin(), 5);
     EXPECT_TRUE(has(alone.err, "order of collisions lost"));
     const Result replica = read("replica.h5");
     EXPECT_EQ(numbers(replica, "series", "collisions").back(), numbers(result, below("replicas"), "collisions")[first]);

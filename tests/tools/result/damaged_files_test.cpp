@@ -80,9 +80,7 @@ const std::vector<Damage>& damages() {
       {"a column of texts that are not there", [](hid_t file) { put_dataset(file, "series/texts", H5T_C_S1, {4}); },
        "a.h5: series/texts: more numbers than the file can hold (found 4 x 1): "},
       {"three dimensions",
-       [](hid_t file) {
-         put_dataset(file, "series/cube", H5T_IEEE_F64LE, {2, 2, 2});
-       },
+       [](hid_t file) { put_dataset(file, "series/cube", H5T_IEEE_F64LE, std::vector<hsize_t>(3, 2)); },
        "a.h5: series/cube: a column has one or two dimensions (found 3): "},
       {"a group above the folder",
        [](hid_t file) {

@@ -28,13 +28,11 @@ TEST_F(FullDisk, RunKeepsItsResultElsewhere) {
   EXPECT_EQ(run.status, 4) << run.err;
   EXPECT_EQ(run.out, "old\na.h5\na.h5.checkpoint\na.h5.part\n");
   EXPECT_TRUE(begins(run.err, "a.h5.checkpoint: could not be written (found No space left on device): "));
-  const std::string begin = "cradle: a.h5: could not be written (found No space left on device): check the folder and "
-                            "the space on its disk; what was computed is in ";
-  const std::size_t at = run.err.find(begin);
-  ASSERT_NE(at, std::string::npos) << run.err;
-  const std::size_t from = at + begin.size();
-  const std::string kept = run.err.substr(from, run.err.find(',', from) - from);
-  EXPECT_NE(tools::read_result(kept).find("snapshots/0003"), nullptr);
+  const auto kept =
+      matches(run.err, R"(cradle: a\.h5: could not be written \(found No space left on device\): check the )"
+                       R"(folder and the space on its disk; what was computed is in ([^,]*),)");
+  ASSERT_EQ(kept.size(), 1U) << run.err;
+  EXPECT_NE(tools::read_result(*kept.begin()).find("snapshots/0003"), nullptr);
 }
 
 TEST_F(FullDisk, WhereNothingCanBeKeptTheMessageSaysSo) {

@@ -13,6 +13,7 @@
 #include "cradle/core/observe/guards.hpp"
 #include "cradle/core/observe/sample.hpp"
 #include "cradle/tests/core/fixtures.hpp"
+#include "cradle/tests/core/observe/placed.hpp"
 
 namespace cradle::test {
 
@@ -66,17 +67,14 @@ template <class Run> bool guards_hold(const Run& run, const Particles<double>& p
 }
 
 // The mean of `value(t)` over many blocks of times, after the first four, and its standard error.
-struct BlockMean {
-  double mean, error;
-};
-template <class Value> BlockMean block_mean(int blocks, int samples, double spacing, const Value& value) {
-  double sum = 0, squares = 0;
+template <class Value> PlainMean block_mean(int blocks, int samples, double spacing, const Value& value) {
+  std::vector<double> means;
   for (int block = -4; block < blocks; ++block) {
     double mean = 0;
     for (int k = 0; k < samples; ++k) mean += value(spacing * ((block + 4.) * samples + k + 1)) / samples;
-    if (block >= 0) sum += mean / blocks, squares += mean * mean / blocks;
+    if (block >= 0) means.push_back(mean);
   }
-  return {sum, std::sqrt((squares - sum * sum) / (blocks - 1))};
+  return mean_of(means);
 }
 
 }  // namespace cradle::test

@@ -33,8 +33,10 @@ inline std::int64_t bits_of(ParticleIndex particle, int shift, std::uint64_t mas
   return static_cast<std::int64_t>((hash(particle) >> shift) & mask);
 }
 
-template <class T> Scene<T> list(std::vector<T> x, std::vector<T> v, std::vector<T> m = {}) {
-  return std::make_shared<List<T>>(std::move(x), std::move(v), std::move(m));
+// With a circumference: on a ring.
+template <class T>
+Scene<T> list(std::vector<T> x, std::vector<T> v, std::vector<T> m = {}, const T& circumference = T(0)) {
+  return std::make_shared<List<T>>(std::move(x), std::move(v), std::move(m), circumference);
 }
 
 template <class T> Scene<T> rmix(ParticleIndex n) {
@@ -48,17 +50,15 @@ template <class T> Scene<T> rmix(ParticleIndex n) {
 
 inline std::int64_t rshock_displacement(ParticleIndex particle) { return bits_of(particle, 0, 0x3FFFF) - 131072; }
 
-// Rows of unit spacing that approach each other at plus and minus `speed`.
-template <class T> Scene<T> rshock(ParticleIndex n, const T& speed) {
-  return std::make_shared<Rows<T>>(symmetric_rows<T>(n, speed, T(1), rshock_displacement));
+// Rows of unit spacing that approach each other at plus and minus 1/2.
+template <class T = double> Scene<T> displaced_rows(ParticleIndex n, const Displacement& displacement) {
+  return std::make_shared<Rows<T>>(symmetric_rows<T>(n, T(T(1) / T(2)), T(1), displacement));
 }
-template <class T> Scene<T> rshock(ParticleIndex n) { return rshock(n, T(T(1) / T(2))); }
+template <class T> Scene<T> rshock(ParticleIndex n) { return displaced_rows<T>(n, rshock_displacement); }
 
 // Without displacements: many pairs collide at one time.
 inline std::int64_t still(ParticleIndex) { return 0; }
-template <class T = double> Scene<T> lattice_rows(ParticleIndex n) {
-  return std::make_shared<Rows<T>>(symmetric_rows<T>(n, T(T(1) / T(2)), T(1), still));
-}
+template <class T = double> Scene<T> lattice_rows(ParticleIndex n) { return displaced_rows<T>(n, still); }
 // At integers, with the speeds -1, 0 and 1 by chance: crowds of them collide at one time.
 template <class T> Scene<T> crowds(ParticleIndex n, ParticleIndex seed) {
   std::vector<T> x, v;
@@ -87,13 +87,13 @@ inline Scene<double> cold_gas(ParticleIndex hot, HotPlace place) {
 
 // Rows and rings as in scenes, displaced by counter-based random numbers.
 inline Scene<double> uniform_rows(ParticleIndex count, double perturbation = 0.05, std::uint64_t seed = 3) {
-  return std::make_shared<Rows<double>>(
-      symmetric_rows<double>(count, 0.5, 1, uniform_displacement(perturbation, seed, 0)));
+  return displaced_rows(count, uniform_displacement(perturbation, seed, 0));
 }
 inline Scene<double> gaussian_ring(ParticleIndex count, double length, std::uint64_t seed = 3,
-                                   double perturbation = 0.05) {
-  return std::make_shared<Ring<double>>(count, length, 1., gaussian_velocity(seed, 0),
-                                        uniform_displacement(perturbation, seed, 0));
+                                   double perturbation = 0.05, std::uint64_t replica = 0,
+                                   MassPattern<double> masses = {}) {
+  return std::make_shared<Ring<double>>(count, length, 1., gaussian_velocity(seed, replica),
+                                        uniform_displacement(perturbation, seed, replica), std::move(masses));
 }
 
 // The same particles as a list, which does not know that they are rows; also with other masses, by their number, and on
@@ -106,7 +106,7 @@ Scene<T> as_list(const Particles<T>& particles, const Mass& mass, const T& circu
     v.push_back(particles.velocity(b));
     m.push_back(mass(b));
   }
-  return std::make_shared<List<T>>(std::move(x), std::move(v), std::move(m), circumference);
+  return list(std::move(x), std::move(v), std::move(m), circumference);
 }
 template <class T> Scene<T> as_list(const Particles<T>& particles) {
   return as_list(particles, [&](ParticleIndex b) { return particles.mass(b); });

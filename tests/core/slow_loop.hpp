@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "cradle/core/chains/chain.hpp"
-#include "cradle/core/chains/configuration.hpp"
 #include "cradle/core/engine/simulation.hpp"
 #include "cradle/core/queue/event_queue.hpp"
 

@@ -16,9 +16,7 @@ inline const Wide tiny = pow(Wide(10), -42);
 
 // A shock in the paper's units, u0 = 1/2.
 template <class T> theory::WetShock<T> paper_shock(const T& loss, std::uint64_t particles = 0) {
-  theory::WetShock<T> shock{loss};
-  shock.particles = particles;
-  return shock;
+  return {.loss = loss, .particles = particles};
 }
 
 // The front at its turnover, continuous and discrete, u0 = 1/2.

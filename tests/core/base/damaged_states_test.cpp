@@ -43,12 +43,12 @@ template <class Run> class Contradicted {
 constexpr double infinity = std::numeric_limits<double>::infinity(), nan = std::numeric_limits<double>::quiet_NaN();
 
 template <class Chain, class Law> using Made = Simulation<double, Law, Chain>;
-template <class Chain> Contradicted<Made<Chain, Dry>> dry(const std::shared_ptr<const Particles<double>>& particles) {
+template <class Chain> Contradicted<Made<Chain, Dry>> dry(const Scene<double>& particles) {
   return Contradicted<Made<Chain, Dry>>([=] { return Made<Chain, Dry>(Dry(0.9, 1e-4), Chain(particles, 0.)); });
 }
 template <std::size_t k, class X> auto& field(X& x) { return std::get<k>(X::state(x)); }
 
-template <class Chain> void expect_gaps_refused(const std::shared_ptr<const Particles<double>>& particles) {
+template <class Chain> void expect_gaps_refused(const Scene<double>& particles) {
   using Run = Made<Chain, Dry>;
   const auto loading = dry<Chain>(particles);
   const auto gap = [](Run& run, std::ptrdiff_t from_first) -> Gap<double>& {
@@ -84,29 +84,23 @@ TEST(DamagedStates, GapsThatNoRunHasAreRefused) {
 }
 
 TEST(DamagedStates, FrontsThatNoRunHasAreRefused) {
-  using Run = Made<GapChain<double>, Dry>;
-  const auto range = [](Run& run) -> HeldRange& { return field<1>(field<0>(run)); };
-  const auto on_ring = dry<GapChain<double>>(gaussian_ring(20, 20));
-  on_ring.cannot_be("seam", [&](Run& run) { field<3>(range(run)) = 0; });
-  const auto on_line = dry<GapChain<double>>(uniform_rows(60));
-  on_line.cannot_be("slots",
-                    [&](Run& run) { field<0>(range(run)) = HeldRange::Extent::nowhere; });  // fronts without collisions
-  using Positions = Made<PositionChain<double>, Dry>;
-  const auto positions = dry<PositionChain<double>>(uniform_rows(60));
-  positions.cannot_be("fronts", [](Positions& run) { field<6>(field<0>(run)) = 0; });
+  const auto range = [](GapRun<double>& run) -> HeldRange& { return field<1>(field<0>(run)); };
+  dry<GapChain<double>>(gaussian_ring(20, 20)).cannot_be("seam", [&](auto& run) { field<3>(range(run)) = 0; });
+  const auto without_collisions = dry<GapChain<double>>(uniform_rows(60));
+  without_collisions.cannot_be("slots", [&](auto& run) { field<0>(range(run)) = HeldRange::Extent::nowhere; });
+  dry<PositionChain<double>>(uniform_rows(60)).cannot_be("fronts", [](auto& run) { field<6>(field<0>(run)) = 0; });
 }
 
 TEST(DamagedStates, PositionsThatNoRunHasAreRefused) {
-  using Run = Made<PositionChain<double>, Dry>;
   const auto loading = dry<PositionChain<double>>(uniform_rows(60));
   loading.loads();
   for (const double wrong : {infinity, nan}) {
-    loading.cannot_be("numbers", [&](Run& run) { field<0>(field<0>(run))[5].x = wrong; });
-    loading.cannot_be("numbers", [&](Run& run) { field<2>(field<0>(run))[5] = wrong; });
-    loading.cannot_be("numbers", [&](Run& run) { field<4>(field<0>(run)) = wrong; });  // the origin
+    loading.cannot_be("numbers", [&](auto& run) { field<0>(field<0>(run))[5].x = wrong; });
+    loading.cannot_be("numbers", [&](auto& run) { field<2>(field<0>(run))[5] = wrong; });
+    loading.cannot_be("numbers", [&](auto& run) { field<4>(field<0>(run)) = wrong; });  // the origin
   }
-  loading.cannot_be("numbers", [](Run& run) { field<1>(field<0>(run))[5] = nan; });    // a collision
-  loading.cannot_be("numbers", [](Run& run) { field<2>(field<0>(run)).back() = 1; });  // a gap beyond the end closes
+  loading.cannot_be("numbers", [](auto& run) { field<1>(field<0>(run))[5] = nan; });    // a collision
+  loading.cannot_be("numbers", [](auto& run) { field<2>(field<0>(run)).back() = 1; });  // a gap beyond the end closes
 }
 
 template <class Make> void expect_cells_refused(const Make& make, bool on_ring) {
@@ -150,22 +144,20 @@ TEST(DamagedStates, ClustersThatNoGasHasAreRefused) {
 }
 
 TEST(DamagedStates, ReviewsThatNeverComeAreRefused) {
-  using Run = Made<GapChain<double>, Dry>;
   const auto loading = dry<GapChain<double>>(gaussian_ring(20, 20));
-  loading.cannot_be("pacing", [](Run& run) { field<3>(run).next_review = std::uint64_t{1} << 60; });
-  loading.cannot_be("pacing", [](Run& run) { field<3>(run).next_poll = std::uint64_t{1} << 60; });
-  loading.cannot_be("pacing", [](Run& run) { field<3>(run).most_collisions = std::uint64_t{1} << 60; });
-  loading.cannot_be("pacing", [](Run& run) {
-    field<2>(run).collisions = std::uint64_t{1} << 61;
-  });  // times a number of epochs they are no integer
+  constexpr std::uint64_t late = std::uint64_t{1} << 60;
+  loading.cannot_be("pacing", [](auto& run) { field<3>(run).next_review = late; });
+  loading.cannot_be("pacing", [](auto& run) { field<3>(run).next_poll = late; });
+  loading.cannot_be("pacing", [](auto& run) { field<3>(run).most_collisions = late; });
+  // Times a number of epochs they are no integer.
+  loading.cannot_be("pacing", [](auto& run) { field<2>(run).collisions = 2 * late; });
 }
 
 // A run continues from what loading cannot detect: found by fuzzing, collisions by which times overflow. They have an
 // end, too.
 TEST(DamagedStates, TimesThatOverflowEnd) {
-  using Run = Made<GapChain<double>, Dry>;
-  const auto make = [] { return Run(Dry(0.9, 1e-3), GapChain<double>(gaussian_ring(8, 8), 0.)); };
-  Run run = make();
+  const auto make = [] { return gap_run(gaussian_ring(8, 8), Dry(0.9, 1e-3)); };
+  auto run = make();
   run.advance(2);
   auto& gaps = field<0>(field<0>(run)).gaps;
   const double numbers[8][4] = {{1.8670852680901024, 1.2509978903764583, 8.901762437645102e-251, 1.4380232701152638},
@@ -182,7 +174,7 @@ TEST(DamagedStates, TimesThatOverflowEnd) {
     ++s;
   }
   SavedState state = SavedState::of(run);
-  Run later = make();
+  auto later = make();
   load(state, later);
   EXPECT_EQ(later.advance(5), Status::reached);
 }

@@ -8,7 +8,6 @@
 #include "cradle/core/base/large_pages.hpp"
 
 namespace cradle::test::large_pages_test {
-namespace {
 
 TEST(LongArray, KeepsItsNumbersAsItGrowsAndShrinksAcrossTheLimit) {
   constexpr std::size_t page = std::size_t{1} << 21, limit = 2 * page / sizeof(std::uint64_t);
@@ -34,5 +33,4 @@ TEST(LongArray, KeepsItsNumbersAsItGrowsAndShrinksAcrossTheLimit) {
   expect_counted(longer, limit - 1);
 }
 
-}  // namespace
 }  // namespace cradle::test::large_pages_test

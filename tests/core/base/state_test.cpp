@@ -1,7 +1,6 @@
 // The state of a run as a value: saved anywhere and loaded into a run of the same scene, it continues with the same
 // bits. Truncated or contradictory states are refused, before memory is allocated for them.
 #include <limits>
-#include <memory>
 
 #include <gtest/gtest.h>
 
@@ -71,11 +70,11 @@ void expect_always_taken(const Make& make, double step, int steps, Segments&&...
 
 // As do runs of all kinds, in engine/same_bits_test.cpp.
 TEST(State, OfAGasWithoutEventsIsContinuedWithTheSameBits) {
-  test::expect_same_from_anywhere([] { return StickyGas<double>(uniform_rows(60), 0.); }, 0, 3.7, 40,
-                                  [](const auto& later, const auto& whole) {
-                                    EXPECT_EQ(later.energy_lost(), whole.energy_lost());
-                                    EXPECT_EQ(later.last_collision_time(), whole.last_collision_time());
-                                  });
+  expect_same_from_anywhere([] { return StickyGas<double>(uniform_rows(60), 0.); }, 3.7, 40,
+                            [](const auto& later, const auto& whole) {
+                              EXPECT_EQ(later.energy_lost(), whole.energy_lost());
+                              EXPECT_EQ(later.last_collision_time(), whole.last_collision_time());
+                            });
 }
 
 // After a collision by which cells are laid out anew, fewer than before, nothing points beyond them.

@@ -2,43 +2,36 @@
 // bytes, whatever the run before has left.
 #include <gtest/gtest.h>
 
-#include <memory>
-
-#include "cradle/core/base/state.hpp"
 #include "cradle/core/chains/cluster_chain.hpp"
-#include "cradle/core/chains/gap_chain.hpp"
-#include "cradle/core/chains/position_chain.hpp"
-#include "cradle/core/engine/simulation.hpp"
 #include "cradle/core/initial/gas.hpp"
-#include "cradle/core/initial/ring.hpp"
-#include "cradle/core/initial/rows.hpp"
-#include "cradle/core/initial/walled.hpp"
 #include "cradle/core/parallel/segments.hpp"
+#include "cradle/tests/core/between_walls.hpp"
 
-namespace cradle::tests::begin_again_test {
+namespace cradle::test::begin_again_test {
 
-using Start = std::shared_ptr<const Particles<double>>;
+using Start = Scene<double>;
 
 Start ring(ParticleIndex count, std::uint64_t replica) {
-  return std::make_shared<Ring<double>>(count, static_cast<double>(count), 1., gaussian_velocity(1, replica),
-                                        uniform_displacement(0.2, 1, replica));
+  return gaussian_ring(count, static_cast<double>(count), 1, 0.2, replica);
 }
 Start rows(ParticleIndex count, std::uint64_t replica) {
-  return std::make_shared<Rows<double>>(symmetric_rows(count, 0.5, 1., uniform_displacement(0.2, 1, replica)));
+  return displaced_rows(count, uniform_displacement(0.2, 1, replica));
 }
 // Above a floor, or between two walls.
 Start walled(ParticleIndex count, std::uint64_t replica, double acceleration) {
   const auto length = static_cast<double>(count);
-  auto gas = std::make_shared<cradle::Gas<double>>(count, 0., length, 1., gaussian_velocity(2, replica),
-                                                   uniform_displacement(0.2, 2, replica));
-  Wall<double> left{0, 0, 0.9, 0, 2, replica}, right{length, 0, 1, 0, 2, replica};
-  left.rest_speed = 0.05;
-  return std::make_shared<Walled<double>>(std::move(gas), left, right, acceleration);
+  const Start gas = std::make_shared<cradle::Gas<double>>(count, 0., length, 1., gaussian_velocity(2, replica),
+                                                          uniform_displacement(0.2, 2, replica));
+  return between(acceleration, gas, Wall<double>{.position = 0, .restitution = 0.9, .rest_speed = 0.05},
+                 Wall<double>{length});
 }
 
-template <class Run> void expect_as_new(Run again, const Start& other, Run anew, double until) {
+template <class Chain, class Law>
+void expect_as_new(const Law& law, const Start& before, const Start& after, double until,
+                   const Policy<double>& policy = {}) {
+  Simulation again(law, Chain(before, 0.), policy), anew(law, Chain(after, 0.), policy);
   again.advance(until);
-  again.begin_again(other);
+  again.begin_again(after);
   for (const double time : {until / 3, until}) {
     EXPECT_EQ(again.advance(time), anew.advance(time));
     EXPECT_EQ(SavedState::of(again).bytes(), SavedState::of(anew).bytes());
@@ -46,16 +39,6 @@ template <class Run> void expect_as_new(Run again, const Start& other, Run anew,
     EXPECT_EQ(again.kinetic_energy(time), anew.kinetic_energy(time));
   }
   EXPECT_GT(anew.counts().collisions, 4U);
-}
-
-template <class Chain, class Law> auto run_of(const Law& law, const Start& particles, const Policy<double>& policy) {
-  return Simulation(law, Chain(particles, 0.), policy);
-}
-
-template <class Chain, class Law>
-void expect_as_new(const Law& law, const Start& before, const Start& after, double until,
-                   const Policy<double>& policy = {}) {
-  expect_as_new(run_of<Chain>(law, before, policy), after, run_of<Chain>(law, after, policy), until);
 }
 
 TEST(BeginAgain, IsANewRunInGaps) {
@@ -75,8 +58,7 @@ TEST(BeginAgain, IsANewRunInGaps) {
 }
 
 TEST(BeginAgain, ForgetsACollapse) {
-  Policy<double> stop;
-  stop.collapse = CollapsePolicy::stop;
+  const Policy<double> stop{CollapsePolicy::stop};
   expect_as_new<GapChain<double>>(Inelastic<double>(0.05), rows(6, 0), rows(6, 2), 8, stop);
   expect_as_new<PositionChain<double>>(Inelastic<double>(0.05), rows(6, 0), rows(6, 2), 8, stop);
 }
@@ -102,4 +84,4 @@ TEST(BeginAgain, WithTheSegmentsOfTheRunBefore) {
   EXPECT_GT(segments.statistics().slabs, 4U);
 }
 
-}  // namespace cradle::tests::begin_again_test
+}  // namespace cradle::test::begin_again_test

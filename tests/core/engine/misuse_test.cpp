@@ -7,8 +7,6 @@
 
 #include "cradle/core/chains/cluster_chain.hpp"
 #include "cradle/core/engine/sticky_gas.hpp"
-#include "cradle/core/initial/cold.hpp"
-#include "cradle/core/initial/ring.hpp"
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/texts.hpp"
 
@@ -26,10 +24,6 @@ void expect_refused(const std::function<void()>& construct, const std::string& w
   EXPECT_GT(message.size(), close + 3) << message;
 }
 
-Scene<double> ring_of(std::vector<double> x, std::vector<double> v, double circumference) {
-  return std::make_shared<List<double>>(std::move(x), std::move(v), std::vector<double>{}, circumference);
-}
-
 TEST(Misuse, UnequalMassesInAChainForIdenticalOnes) {
   const auto particles = list<double>({0, 1, 2}, {1, 0, -1}, {3, 3, 5});
   expect_refused([&] { GapChain<double>(particles, 0.0); }, "unequal masses", "particle 2 has 5");
@@ -43,7 +37,7 @@ TEST(Misuse, MassesAndSpeedsWhoseSumsOverflow) {
     return std::make_shared<Rows<double>>(
         symmetric_rows(8, speed, 1.0, Displacement(still), MassPattern<double>({mass})));
   };
-  const std::pair<const char*, std::shared_ptr<const Particles<double>>> cases[] = {
+  const std::pair<const char*, Scene<double>> cases[] = {
       {"the kinetic energy", list<double>({0, 1, 2}, {1e160, -1e160, -2e160})},
       {"the kinetic energy", still_rows(1e160, 1)},
       {"the kinetic energy", still_rows(1e100, 1e150)},
@@ -67,7 +61,7 @@ TEST(Misuse, MassesAndSpeedsWhoseSumsOverflow) {
 }
 
 TEST(Misuse, ARingInAbsolutePositions) {
-  const auto particles = ring_of({0, 1, 2}, {1, 0, -1}, 10);
+  const auto particles = list<double>({0, 1, 2}, {1, 0, -1}, {}, 10);
   expect_refused([&] { PositionChain<double>(particles, 0.0); }, "a ring in absolute positions", "circumference 10");
 }
 
@@ -143,7 +137,7 @@ TEST(Misuse, ListsOfNumbersThatAreNone) {
   expect_refused([] { List<double>({1, 1}, {0, 0}); }, "particles 0 and 1 are not in order", "at 1.0");
   expect_refused(
       [] {
-        List<double>({0, 2}, {0, 0}, {}, 1);
+        list<double>({0, 1}, {0, 0}, {}, 1);
       },
       "the particles do not fit on the ring", "circumference 1");
   expect_refused([] { List<double>({0, 2}, {0, 0}, {}, -9); }, "circumference is negative", "-9");
@@ -157,6 +151,9 @@ TEST(Misuse, RingsOfNumbersThatAreNone) {
                    "standard deviation of the velocities is not finite", std::to_string(none));
   }
   expect_refused([] { Ring<double>(3, -2, 1, still, still); }, "length or variance", "length -2");
+  expect_refused([] { Ring<double>(3, 0, 1, still, still); }, "length or variance", "length 0");
+  expect_refused([] { Ring<double>(3, 1, 0, still, still); }, "length or variance", "standard deviation 0");
+  EXPECT_THROW(Ring<double>(0, 1, 1, still, still), std::invalid_argument);
 }
 
 }  // namespace cradle::test::misuse_test

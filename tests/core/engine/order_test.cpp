@@ -65,16 +65,6 @@ TEST(Order, AViolationIsDetectedAndCounted) {
   expect_counted(ClusterChain<Rational>(particles, Rational(0)));
 }
 
-TEST(Order, InDoubleTheSameViolationIsCounted) {
-  const auto particles = list<double>({-1, 0, 0.015, 1.215}, {1, 0, 0, -1});
-  GapChain<double> chain(particles, 0);
-  const Inelastic<double> law(0.5);
-  for (const Slot s : {chain.first() + 2, chain.first()}) chain.collide(law, s, chain.due(s));
-  EXPECT_EQ(chain.account().order_lost, 1U);
-  EXPECT_EQ(chain.account().first_order_lost.particle, 1);
-  EXPECT_NEAR(chain.account().first_order_lost.gap, -0.135, 8 * std::numeric_limits<double>::epsilon());
-}
-
 // ---- ties
 
 // The work: a crowd of k collisions takes some k log k comparisons of exact times, not k^2.

@@ -16,7 +16,7 @@ namespace cradle::test::sticky_gas_test {
 TEST(StickyGas, TakesInOnlyWhatIsHit) {
   int calls = 0;
   const auto counted = [&](ParticleIndex particle) { return ++calls, rshock_displacement(particle); };
-  const auto rows = std::make_shared<Rows<double>>(symmetric_rows<double>(20'000'000, 0.5, 1.0, counted));
+  const auto rows = displaced_rows(20'000'000, counted);
   StickyGas<double> gas(rows, 0.0);
   for (const double t : {10.0, 49.9, 50.1}) gas.advance(t);
   EXPECT_LE(calls, 56);
@@ -34,9 +34,8 @@ TEST(StickyGas, TakesInOnlyWhatIsHit) {
 // Interrupted again and again while rows are taken in, it ends in the bits of a gas that was left alone.
 TEST(StickyGas, InterruptedItContinuesToTheSameBits) {
   const auto rows = rshock<double>(400'000);
-  Policy<double> policy;
   int calls = 0;
-  policy.interrupt = [&] { return ++calls % 3 != 0; };
+  const Policy<double> policy{.interrupt = [&] { return ++calls % 3 != 0; }};
   StickyGas<double> alone(rows, 0.0), interrupted(rows, 0.0, policy);
   for (const double t : {1e5, 3e5}) {
     alone.advance(t);

@@ -60,11 +60,10 @@ TYPED_TEST(Executors, WorkersDoEveryJobOnce) {
       });
       EXPECT_EQ(clashes, 0);
       for (const auto& times : made) EXPECT_EQ(times, 1) << threads << " threads, " << jobs << " jobs";
-      EXPECT_THROW(workers(executor).run(jobs,
-                                         [](std::size_t job, std::size_t) {
-                                           if (job == 0) throw std::domain_error("");
-                                         }),
-                   std::domain_error);
+      const auto fail = [](std::size_t job, std::size_t) {
+        if (job == 0) throw std::domain_error("");
+      };
+      EXPECT_THROW(workers(executor).run(jobs, fail), std::domain_error);
     }
 }
 

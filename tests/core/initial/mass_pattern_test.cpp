@@ -15,8 +15,7 @@ Scene<double> rows(MassPattern<double> masses, std::optional<CentralParticle<dou
   return unequal_rows(std::move(centre), std::move(masses), times);
 }
 Scene<double> ring(MassPattern<double> masses, ParticleIndex count = 300) {
-  return std::make_shared<Ring<double>>(count, 300., 1., gaussian_velocity(3, 0), uniform_displacement(0.05, 3, 0),
-                                        std::move(masses));
+  return gaussian_ring(count, 300, 3, 0.05, 0, std::move(masses));
 }
 
 void expect_sums(const Particles<double>& particles) {

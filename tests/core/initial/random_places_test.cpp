@@ -66,7 +66,7 @@ Rows<double> poisson_rows(ParticleIndex left, ParticleIndex right, bool centre) 
 }
 
 TEST(PoissonPositions, GapsAreExponentialAndIndependent) {
-  std::vector<double> units, gaps;
+  std::vector<double> gaps;
   for (ParticleIndex p = 0; p < many; ++p) {
     const std::int64_t gap = exponential_gap(11, 5, p);
     ASSERT_GE(gap, 1);
@@ -125,10 +125,8 @@ TEST(PoissonPositions, FewPlacesOfManyReplicasAreUniform) {
                                     uniform_places(count, 5, replica));
       first.push_back((gas.position(0) + 1) / 2);
       // One of the places, drawn by the parity of other random numbers, is one uniform number.
-      places.push_back(
-          (gas.position(static_cast<ParticleIndex>(random_bits(6, replica, 0) % static_cast<std::uint64_t>(count))) +
-           1) /
-          2);
+      const auto one = static_cast<ParticleIndex>(random_bits(6, replica, 0) % static_cast<std::uint64_t>(count));
+      places.push_back((gas.position(one) + 1) / 2);
     }
     expect_distribution(places, uniform);
     const auto n = static_cast<double>(count);

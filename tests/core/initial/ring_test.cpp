@@ -1,4 +1,5 @@
-// The initial state of free cooling on a ring, and what is no ring. (Motion on rings: precision/exact_gas_test.cpp.)
+// The initial state of free cooling on a ring. (Motion on rings: precision/exact_gas_test.cpp; what is no ring:
+// engine/misuse_test.cpp.)
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -39,14 +40,6 @@ TEST(Ring, StartsWithZeroMomentumAndTheRequestedVariance) {
 
 TEST(Ring, PortableLogarithm) {
   for (double x = 1; x > 1e-19; x *= 0.77) EXPECT_NEAR(detail::portable_log(x), std::log(x), 4e-16 * -std::log(x)) << x;
-}
-
-TEST(Ring, RefusesWhatIsNoRing) {
-  const VelocityDraw draw = gaussian_velocity(1, 0);
-  EXPECT_THROW(Ring<double>(0, 1.0, 1.0, draw, still), std::invalid_argument);
-  EXPECT_THROW(Ring<double>(3, 0.0, 1.0, draw, still), std::invalid_argument);
-  EXPECT_THROW(Ring<double>(3, 1.0, 0.0, draw, still), std::invalid_argument);
-  EXPECT_THROW(List<double>({0, 1}, {0, 0}, {}, 1.0), std::invalid_argument);
 }
 
 }  // namespace cradle::test::ring_test

@@ -2,22 +2,24 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
 
 #include "cradle/core/initial/velocities.hpp"
 
-namespace cradle::tests::velocities_test {
+namespace cradle::test::velocities_test {
 
-// Marsaglia's polar method for one particle.
+// Marsaglia's polar method for one particle: the square of the radius and the velocity, if it is not rejected.
+std::optional<std::pair<double, std::int64_t>> polar(std::uint64_t bits) {
+  const double u = (static_cast<double>(bits >> 32) + 0.5) * 0x1p-31 - 1;
+  const double v = (static_cast<double>(bits & 0xFFFFFFFF) + 0.5) * 0x1p-31 - 1, square = u * u + v * v;
+  if (square >= 1) return {};
+  const double normal = u * std::sqrt(-2 * detail::portable_log(square) / square);
+  return std::pair(square, static_cast<std::int64_t>(std::floor(normal * 0x1p28 + 0.5)));
+}
 std::int64_t one_gaussian(std::uint64_t seed, std::uint64_t replica, ParticleIndex particle) {
-  for (std::uint64_t attempt = 1;; ++attempt) {
-    const std::uint64_t bits = random_bits(seed, replica, static_cast<std::uint64_t>(particle) | attempt << 56);
-    const double u = (static_cast<double>(bits >> 32) + 0.5) * 0x1p-31 - 1;
-    const double v = (static_cast<double>(bits & 0xFFFFFFFF) + 0.5) * 0x1p-31 - 1;
-    const double square = u * u + v * v;
-    if (square >= 1) continue;
-    const double normal = u * std::sqrt(-2 * detail::portable_log(square) / square);
-    return static_cast<std::int64_t>(std::floor(normal * static_cast<double>(displacement_unit) + 0.5));
-  }
+  for (std::uint64_t attempt = 1;; ++attempt)
+    if (const auto drawn = polar(random_bits(seed, replica, static_cast<std::uint64_t>(particle) | attempt << 56)))
+      return drawn->second;
 }
 
 TEST(Velocities, AreThoseThatAreDrawnOneByOne) {
@@ -43,12 +45,9 @@ TEST(Velocities, OfAllBitsAreExact) {
   for (const std::uint64_t all :
        {0x80000000'80000000, 0x7FFFFFFF'80000000u, 0x80000000'00000001, 0xB504F333'7FFFFFFF}) {
     const lanes::Polar of = lanes::polar(lanes::Words{} + all);
-    const double u = (static_cast<double>(all >> 32) + 0.5) * 0x1p-31 - 1;
-    const double v = (static_cast<double>(all & 0xFFFFFFFF) + 0.5) * 0x1p-31 - 1, square = u * u + v * v;
-    const double normal = u * std::sqrt(-2 * detail::portable_log(square) / square);
-    EXPECT_EQ(of.square[0], square);
-    EXPECT_EQ(of.velocity[0], static_cast<std::int64_t>(std::floor(normal * 0x1p28 + 0.5)));
+    EXPECT_EQ(of.square[0], polar(all)->first);
+    EXPECT_EQ(of.velocity[0], polar(all)->second);
   }
 }
 
-}  // namespace cradle::tests::velocities_test
+}  // namespace cradle::test::velocities_test

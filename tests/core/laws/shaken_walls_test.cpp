@@ -93,11 +93,8 @@ struct Ball {
                                    wall(0, shaken(Shape::sine, shaking, phi - std::numbers::pi, 1), restitution));
     auto run = falling(particles, Inelastic<double>(1));
     std::pair<double, double> last;
-    EXPECT_EQ(run.advance(2 * std::numbers::pi * collisions,
-                          [&](const Collision<double>& c) {
-                            last = {last.second, c.closing_speed};
-                          }),
-              Status::reached);
+    const auto observe = [&](const Collision<double>& c) { last = {last.second, c.closing_speed}; };
+    EXPECT_EQ(run.advance(2 * std::numbers::pi * collisions, observe), Status::reached);
     return last;
   }
 };

@@ -37,18 +37,6 @@ TEST(Cloud, NoneBeforeTheFirstCollision) {
   EXPECT_EQ(found.mass, 0);
 }
 
-TEST(Cloud, IndicesFollowTheClustersThroughEachOther) {
-  // Two heavy clusters that pass at t = 2: the left one of the pair becomes the other particle.
-  Simulation run(Wet<double>{0.25}, ClusterChain<double>(list<double>({-1, 1}, {0.5, -0.5}, {10, 7}), 0.0));
-  ASSERT_EQ(run.advance(3.0), Status::reached);
-  const auto after = cloud(run.configuration(3.0));
-  ASSERT_TRUE(after.left && after.right);
-  EXPECT_EQ(after.left->index, 1);
-  EXPECT_EQ(after.left->mass, 7);
-  EXPECT_EQ(after.right->index, 0);
-  EXPECT_LT(after.left->v, 0);
-}
-
 TEST(Masses, BinsAreQuarterPowersOfTwo) {
   const auto clusters = mass_distribution(five_clusters(), 1.0);  // masses 9, 3, 1, 5
   ASSERT_EQ(clusters.size(), 13U);                                // 2^(12/4) = 8 <= 9 < 2^(13/4)
@@ -100,7 +88,7 @@ TEST(Zone, ParticleJustBelowTheEndIsInTheLastBin) {
 
 // Rows that nothing slows down have no zone; and particles that no front has reached are seen.
 TEST(Zone, NoWidthWithoutAFall) {
-  const auto rows = std::make_shared<Rows<double>>(symmetric_rows(200, 0.5, 1.0, rshock_displacement));
+  const auto rows = rshock<double>(200);
   Simulation run(Wet<double>{0.0}, ClusterChain<double>(rows, 0.0));
   ZoneAverage zone(10, 20, 16, 1);
   for (int k = 1; k <= 16; ++k) {

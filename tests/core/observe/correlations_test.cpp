@@ -5,10 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "cradle/core/chains/gravity.hpp"
-#include "cradle/core/initial/walled.hpp"
-#include "cradle/core/observe/configuration_statistics.hpp"
-#include "cradle/tests/core/fixtures.hpp"
+#include "cradle/tests/core/between_walls.hpp"
 #include "cradle/tests/core/observe/placed.hpp"
 #include "cradle/tests/core/saved.hpp"
 #include "cradle/tests/core/strict_real.hpp"
@@ -158,9 +155,7 @@ TEST(TaggedParticles, AreNotFoldedOnRings) {
     for (const double restitution : {1., 0.7}) {
       std::vector<double> v{1.5, -0.5, 0.25, -2, 0.75};
       for (double& each : v) each += drift;
-      expect_unfolded(std::make_shared<List<double>>(std::vector<double>{-0.4, 0.1, 0.75, 1.5, 1.9}, v,
-                                                     std::vector<double>{1, 3, 0.5, 1, 2}, 2.5),
-                      restitution, 15);
+      expect_unfolded(list({-0.4, 0.1, 0.75, 1.5, 1.9}, v, {1, 3, 0.5, 1, 2}, 2.5), restitution, 15);
     }
 }
 
@@ -190,8 +185,7 @@ TEST(TaggedParticles, OfRowsAreThoseThatNoFrontHasReachedToo) {
 // Two of five particles have met, the others only fall, as far as s + 1/2 from the time s to the next; one of all flies
 // at 1/2 besides, so the sums over them of squares are 4 (s + 1/2)^2 + s^2, and 4 t^2 + (t - 1/2)^2 of velocities.
 TEST(TaggedParticles, FallWhetherAFrontHasReachedThemOrNot) {
-  const auto particles = std::make_shared<Walled<double>>(list<double>({100, 101, 300, 400, 500}, {0.5, 0, 0, 0, 0}),
-                                                          Wall<double>{0.}, std::nullopt, -1.);
+  const auto particles = between(-1, list<double>({100, 101, 300, 400, 500}, {0.5, 0, 0, 0, 0}), Wall<double>{0.});
   Simulation run(Inelastic<double>(1), GapChain<double>(particles, 0.));
   TaggedParticles<double> tagged(*particles, 1);
   Correlator correlator(tagged.size(), 10);

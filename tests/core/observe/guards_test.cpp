@@ -7,10 +7,7 @@
 #include <optional>
 
 #include "cradle/core/engine/sticky_gas.hpp"
-#include "cradle/core/initial/walled.hpp"
-#include "cradle/core/observe/configuration_statistics.hpp"
-#include "cradle/core/observe/guards.hpp"
-#include "cradle/tests/core/fixtures.hpp"
+#include "cradle/tests/core/between_walls.hpp"
 
 namespace cradle::test::guards_test {
 
@@ -35,8 +32,8 @@ TEST(Guards, AreSilentOnAGasWithoutEvents) {
 // Three elastic particles of different masses between walls: closing speeds cease to add up to 0 by rounding, so a wall
 // moves, as it were, by d, and does the work (2 E/L) d = 2 E d/3. Without it the guard stopped such runs.
 TEST(Guards, KnowTheWorkOfWallsThatRoundingMoves) {
-  const auto particles = std::make_shared<Walled<double>>(list<double>({1, 2, 2.7}, {1, 0, -0.3}, {1, 3, 2}),
-                                                          Wall<double>{0}, Wall<double>{3});
+  const auto particles =
+      between(0, list<double>({1, 2, 2.7}, {1, 0, -0.3}, {1, 3, 2}), Wall<double>{0}, Wall<double>{3});
   Simulation run(Dry(1), GapChain<double, IndividualMasses<double>>(particles, 0.));
   const double energy = particles->kinetic_energy();
   for (double time = 16000; time < 600000; time *= 2) {
@@ -102,11 +99,11 @@ struct Missed {
   Counts counts() const { return {}; }
 };
 TEST(Guards, FindAParticleBeyondAWall) {
-  const Walled<double> particles(list<double>({1, 2}, {1, -1}), Wall<double>{0}, Wall<double>{3});
-  EXPECT_FALSE(beyond_a_wall(Missed{1e-3, 0}, particles, 5., 5.));
-  EXPECT_FALSE(beyond_a_wall(Missed{-1e-15, -1e-15}, particles, 5., 5.)) << "by rounding";
-  const auto on_left = beyond_a_wall(Missed{-1e-11, 1}, particles, 5., 5.),
-             on_right = beyond_a_wall(Missed{1, -1e-11}, particles, 5., 5.);
+  const auto particles = between(0, list<double>({1, 2}, {1, -1}), Wall<double>{0}, Wall<double>{3});
+  EXPECT_FALSE(beyond_a_wall(Missed{1e-3, 0}, *particles, 5., 5.));
+  EXPECT_FALSE(beyond_a_wall(Missed{-1e-15, -1e-15}, *particles, 5., 5.)) << "by rounding";
+  const auto on_left = beyond_a_wall(Missed{-1e-11, 1}, *particles, 5., 5.),
+             on_right = beyond_a_wall(Missed{1, -1e-11}, *particles, 5., 5.);
   ASSERT_TRUE(on_left && on_right);
   EXPECT_EQ(on_left->guard, Guard::wall);
   EXPECT_EQ(on_left->particle, 0);

@@ -5,9 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <map>
-#include <memory>
 
-#include "cradle/core/initial/walled.hpp"
+#include "cradle/tests/core/between_walls.hpp"
 #include "cradle/tests/core/segmented.hpp"
 
 namespace cradle::test::histograms_test {
@@ -81,15 +80,11 @@ std::vector<Counts> counted(const std::vector<Listed>& all, const Run& run, Part
   return {free.counts(), pair.counts(), speeds.counts(), dissipative.counts(), per_particle.counts()};
 }
 
-template <class T> Scene<T> walled(const Scene<T>& particles, const Wall<T>& left, const Wall<T>& right) {
-  return std::make_shared<Walled<T>>(particles, left, right);
-}
-
 TEST(CollisionHistograms, AreThoseOfAListOfAllCollisions) {
   const Inelastic<double> law(0.9, 0.05);
   std::uint64_t below = 0;
   for (const auto& scene : {gas<double>(100, 101.), uniform_rows(300), gaussian_ring(2, 2.),
-                            walled<double>(rmix<double>(40), {.position = -1, .temperature = 0.5}, {.position = 41})}) {
+                            between(0, rmix<double>(40), thermal(-1, 0.5), Wall<double>{41.})}) {
     auto run = gap_run<double>(scene, law);
     std::vector<Listed> all;
     Histogram histogram(5., 40., bins, scene->count(), true);
@@ -109,8 +104,8 @@ TEST(CollisionHistograms, AreThoseOfAListOfAllCollisions) {
 TEST(CollisionHistograms, AreTheSameInSegmentsAndFromASavedState) {
   using Run = GapRun<double>;
   const Inelastic<double> law(0.98, 1e-2);
-  const Wall<double> left{.position = -1, .temperature = 0.5}, right{.position = 801};
-  for (const auto& scene : {gas<double>(800, 801.), gas<double>(800), walled<double>(gas<double>(800), left, right)}) {
+  for (const auto& scene :
+       {gas<double>(800, 801.), gas<double>(800), between(0, gas<double>(800), thermal(-1, 0.5), Wall<double>{801.})}) {
     Run plain = gap_run<double>(scene, law);
     std::uint64_t slabs = 0;
     Histogram wanted(3., 27., bins, scene->count(), true);

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "cradle/core/initial/cold.hpp"
 #include "cradle/core/observe/configuration_statistics.hpp"
 #include "cradle/core/observe/profile.hpp"
 #include "cradle/core/observe/zone.hpp"
@@ -85,8 +84,7 @@ TEST(Profile, TemperatureKeepsItsDigitsInAFastFrame) {
 // On a ring of length 4 every place has images 4 apart; a range across the seam or of several turns has them.
 TEST(Profile, OnARingHasTheImagesOfItsParticles) {
   using Densities = std::vector<double>;
-  const auto ring =
-      std::make_shared<List<double>>(Densities{0.5, 1.5, 1.75, 3.5}, Densities{1, 2, 3, 4}, Densities{}, 4.);
+  const auto ring = list<double>({0.5, 1.5, 1.75, 3.5}, {1, 2, 3, 4}, {}, 4);
   const auto density = [&](BinRange range, std::size_t bins) { return at_start(ring, range, bins).density; };
   EXPECT_EQ(density({0, 4}, 4), (Densities{1, 2, 0, 1}));
   EXPECT_EQ(density({-2, 2}, 4), (Densities{0, 1, 1, 2}));
@@ -140,8 +138,7 @@ TEST(Profile, RangeMayEndInsideARow) {
 // Rows of 1e12 particles: places beyond 2^63 units of 2^-28, exact in double.
 TEST(Profile, OfRowsThatNobodyCanWalk) {
   constexpr ParticleIndex half = 500'000'000'000;
-  const auto still = uniform_displacement(0, 1, 0);
-  const auto rows = std::make_shared<Rows<double>>(symmetric_rows(2 * half, 0.5, 1.0, still));
+  const auto rows = lattice_rows(2 * half);
   EXPECT_EQ(rows->position(0), -499'999'999'999.5);
   EXPECT_EQ(rows->position(2 * half - 1), 499'999'999'999.5);
   const Cold<double> cold(2 * half, 1.0, HotPlace::left, kicked(0, 1.0), still);

@@ -5,8 +5,6 @@
 #include <cmath>
 
 #include "cradle/core/chains/cluster_chain.hpp"
-#include "cradle/core/engine/simulation.hpp"
-#include "cradle/core/initial/rows.hpp"
 #include "cradle/core/observe/scenario.hpp"
 #include "cradle/tests/core/fixtures.hpp"
 
@@ -79,21 +77,18 @@ TEST(Scenario, ExponentsOfAKnownPath) {
 
 // Fig. 11's shock to t = 1e5: meetings counted from the configurations before and after every collision of the pair.
 TEST(Scenario, OfARunAsCountedByHand) {
-  const auto rows = std::make_shared<Rows<double>>(symmetric_rows(200000, 0.5, 1.0, test::rshock_displacement));
-  Simulation run(Wet<double>{0.05}, ClusterChain<double>{rows, 0.0});
+  Simulation run(Wet<double>{0.05}, ClusterChain<double>{rshock<double>(200000), 0.0});
   ScenarioWatch watch;
   std::uint64_t passes = 0, sticks = 0, meetings = 0;
   Cloud<double> before;
   for (int k = 0; k <= 600; ++k) {
     const double t = std::pow(10, 1 + 4.0 * k / 600);
     const bool known = k > 0 && !std::isnan(watch.result(run.counts().merges).established);
-    ASSERT_EQ(run.advance(t,
-                          [&](const Collision<double>& c) {
-                            watch.collision(c.left, c.right, c.time.value(), run.counts().merges);
-                            meetings += known && std::minmax(c.left, c.right) ==
-                                                     std::minmax(before.left->index, before.right->index);
-                          }),
-              Status::reached);
+    const auto observe = [&](const Collision<double>& c) {
+      watch.collision(c.left, c.right, c.time.value(), run.counts().merges);
+      meetings += known && std::minmax(c.left, c.right) == std::minmax(before.left->index, before.right->index);
+    };
+    ASSERT_EQ(run.advance(t, observe), Status::reached);
     const auto now = cloud(run.configuration(t));
     if (known) {  // between two samples the pair mostly meets once at most
       const bool kept =

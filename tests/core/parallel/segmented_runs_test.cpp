@@ -3,6 +3,7 @@
 // threads; and it does not use segments if they are not faster. Every build runs part of this under ThreadSanitizer.
 #include <gtest/gtest.h>
 
+#include "cradle/tests/core/between_walls.hpp"
 #include "cradle/tests/core/segmented.hpp"
 
 namespace cradle::test::segmented_runs_test {
@@ -75,9 +76,7 @@ TEST(Segments, DoNotStartWhereTheyWouldNotPay) {
   auto stops = gap_run<double>(rshock<double>(4000), law, {CollapsePolicy::stop});
   stops.advance(1200, segments);
   EXPECT_GT(stops.collided_particles(), 1000);
-  const Wall<double> holds{.position = -2001, .restitution = 0.5, .rest_speed = 0.01};
-  auto rests =
-      gap_run<double>(std::make_shared<Walled<double>>(rshock<double>(4000), holds, std::nullopt, -0.001), law);
+  auto rests = gap_run(between(-0.001, rshock<double>(4000), wall(-2001, nullptr, 0.5, 0, 0.01)), law);
   rests.advance(1200, segments);
   EXPECT_GT(rests.collided_particles(), 1000);
   EXPECT_EQ(segments.statistics().slabs + segments.statistics().given_up, 0U);
@@ -99,8 +98,7 @@ TEST(Segments, OfARingOfClusters) {
 // A run that was interrupted between two time slabs has no queue; whoever steps on gets one.
 TEST(Segments, SingleStepsAfterAnInterrupt) {
   int calls = 0;
-  Policy<double> policy;
-  policy.interrupt = [&] { return ++calls == 20; };
+  const Policy<double> policy{.interrupt = [&] { return ++calls == 20; }};
   auto plain = gap_run(rshock<double>(1400), law), stepped = gap_run(rshock<double>(1400), law, policy);
   GapSegments segments({}, quick);
   EXPECT_EQ(stepped.advance(560, segments), Status::interrupted);

@@ -158,10 +158,8 @@ TEST(CollapseNumber, OfRingsIsThatOfFreeParticlesOrMore) {
       const auto count = static_cast<ParticleIndex>(few ? std::floor(onset) : 3 * onset);
       int collapsed = 0;
       for (std::uint64_t replica = 0; replica < 20; ++replica) {
-        const auto particles =
-            std::make_shared<Ring<double>>(count, static_cast<double>(count), 1., gaussian_velocity(7, replica),
-                                           uniform_displacement(0.4, 7, replica));
-        auto run = gap_run<double>(particles, Inelastic<double>(eps), {CollapsePolicy::stop, 1e-12});
+        const auto particles = gaussian_ring(count, static_cast<double>(count), 7, 0.4, replica);
+        auto run = gap_run(particles, Inelastic<double>(eps), {CollapsePolicy::stop, 1e-12});
         collapsed += run.advance(1e4) == Status::collapsed;
       }
       EXPECT_EQ(collapsed, few ? 0 : 20) << eps << ", " << count << " particles";
@@ -180,8 +178,7 @@ TEST(CollapseNumber, EstimateOfMcNamaraAndYoung) {
 // The energy is that of the sticky gas whatever the form of the restitution, even of one that is nearly elastic by
 // then.
 TEST(SpeedDependentCooling, HasTheEnergyOfTheStickyGas) {
-  const auto particles =
-      std::make_shared<Ring<double>>(2000, 2000., 1., gaussian_velocity(3, 1), uniform_displacement(0, 1, 0));
+  const auto particles = gaussian_ring(2000, 2000, 3, 0, 1);
   Simulation sharp(Inelastic<double>(0.5, 0.02), GapChain<double>(particles, 0.));
   Simulation smooth(SpeedDependent<double>(0.5, 0.02, 4.), GapChain<double>(particles, 0.));
   Simulation slow(SpeedDependent<double>(0.5, 0.5, 1.), GapChain<double>(particles, 0.));

@@ -6,15 +6,13 @@
 #include <cmath>
 
 #include "cradle/core/chains/cluster_chain.hpp"
-#include "cradle/core/chains/gap_chain.hpp"
-#include "cradle/core/engine/simulation.hpp"
 #include "cradle/core/engine/sticky_gas.hpp"
-#include "cradle/core/initial/ring.hpp"
 #include "cradle/core/theory/free_cooling.hpp"
+#include "cradle/tests/core/fixtures.hpp"
 
 namespace cradle::test::free_cooling_test {
 
-std::shared_ptr<const Ring<double>> gas(ParticleIndex n, double variance) {
+Scene<double> gas(ParticleIndex n, double variance) {
   return std::make_shared<Ring<double>>(n, double(n), std::sqrt(variance), gaussian_velocity(1, 0),
                                         uniform_displacement(0.49, 1, 0));
 }

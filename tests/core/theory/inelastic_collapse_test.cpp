@@ -23,9 +23,8 @@ const Wide tiny = pow(Wide(10), -44);
 TEST(Collapse, OnsetReproducesTheReferenceDigits) {
   const std::array<std::array<const char*, 2>, 3> rows{{{"0.999", "6280.04"}, {"0.99", "625.17"}, {"0.9", "59.66"}}};
   for (const auto& [eps, time] : rows) EXPECT_DIGITS(*collapse_onset_time(InelasticShock<Wide>{decimal(eps)}), time);
-  for (int n = 2; n <= 100; n += 7) {
+  for (int n = 2; n <= 100; n += 7)
     expect_close(*collapse_onset_particles(collapse_limit<Wide>(n)), n, tiny, "inverse of the limit");
-  }
   EXPECT_EQ(*collapse_onset_particles(0.0), 2.0);
 }
 
@@ -33,15 +32,13 @@ TEST(Collapse, LimitsReproduceTheReferenceDigits) {
   EXPECT_DIGITS(three_particle_collapse_limit<Wide>(), "0.0717967697244908258902146339765105");
   expect_close(collapse_limit<Wide>(3), three_particle_collapse_limit<Wide>(), tiny, "three particles");
   expect_close(collapse_limit<Wide>(4), 3 - 2 * sqrt(Wide(2)), tiny, "four particles");
-  const Wide below = three_particle_collapse_limit<Wide>() * (1 - tiny);
-  const Wide above = three_particle_collapse_limit<Wide>() * (1 + tiny);
-  EXPECT_TRUE(collapse_rates(below, checkerboard_coupling(below, 3)));
-  EXPECT_FALSE(collapse_rates(above, checkerboard_coupling(above, 3)));
-  for (const int n : {3, 4, 5, 12, 100}) {
-    const Wide limit = collapse_limit<Wide>(n);
-    EXPECT_TRUE(collapse_rates(Wide(limit * (1 - tiny)), checkerboard_coupling(Wide(limit * (1 - tiny)), n)));
-    EXPECT_FALSE(collapse_rates(Wide(limit * (1 + tiny)), checkerboard_coupling(Wide(limit * (1 + tiny)), n)));
-  }
+  const auto expect_limit = [](const Wide& limit, int n) {
+    const Wide below = limit * (1 - tiny), above = limit * (1 + tiny);
+    EXPECT_TRUE(collapse_rates(below, checkerboard_coupling(below, n))) << n;
+    EXPECT_FALSE(collapse_rates(above, checkerboard_coupling(above, n))) << n;
+  };
+  expect_limit(three_particle_collapse_limit<Wide>(), 3);
+  for (const int n : {3, 4, 5, 12, 100}) expect_limit(collapse_limit<Wide>(n), n);
 }
 
 TEST(Collapse, ThreeParticlesReproduceTheReferenceDigits) {
@@ -71,9 +68,8 @@ TEST(Collapse, SequencePassesTheGapsAtTheReferenceCollisions) {
     CollapseSequence<Wide> sequence(eps, checkerboard_coupling(eps, 3), Wide(1), Wide(1), Wide(1), Wide(1));
     std::array<std::uint64_t, 4> passes{};
     for (int steps = 0; steps < 420; ++steps) {
-      for (std::size_t k = 0; k < sizes.size(); ++k) {
+      for (std::size_t k = 0; k < sizes.size(); ++k)
         if (passes[k] == 0 && sequence.now().other_gap < sizes[k]) passes[k] = sequence.now().collision + 1;
-      }
       const Wide interval = sequence.interval();
       ASSERT_TRUE(sequence.advance());
       ASSERT_LE(sequence.now().time, Wide(limit * (1 + tiny)));

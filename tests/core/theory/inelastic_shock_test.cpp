@@ -18,11 +18,7 @@ namespace cradle::test::inelastic_shock_test {
 
 using namespace cradle::theory;
 
-template <class T> InelasticShock<T> paper_shock(const T& eps) {
-  InelasticShock<T> shock{eps};
-  shock.particles = 8000;
-  return shock;
-}
+template <class T> InelasticShock<T> paper_shock(const T& eps) { return {.restitution = eps, .particles = 8000}; }
 
 // Identities evaluated in Wide: a few hundred roundings of 2^-168, some after factors of up to 1e4.
 const Wide tiny = pow(Wide(10), -44);
@@ -247,9 +243,7 @@ TEST(StickyEnergy, EndsWithTheRows) {
 
 TEST(InelasticShock, HasTheScalesOfItsUnits) {
   // lengths x 4, times x 8, masses x 2: powers of two, so the bits are the same
-  InelasticShock<double> unit{0.99};
-  unit.particles = 200;
-  InelasticShock<double> scaled{0.99, 0.5 * 4 / 8, 4, 2, 200};
+  const InelasticShock<double> unit{.restitution = 0.99, .particles = 200}, scaled{0.99, 0.5 * 4 / 8, 4, 2, 200};
   EXPECT_EQ(front_position(scaled, 8 * 50.0), 4 * front_position(unit, 50.0));
   EXPECT_EQ(front_velocity(scaled, 8 * 50.0), front_velocity(unit, 50.0) / 2);
   EXPECT_EQ(interaction_density(scaled, 8 * 50.0), interaction_density(unit, 50.0) / 2);

@@ -48,8 +48,7 @@ TEST(TheoriesInAStrictScalar, OfInelasticShocksAndCollapse) {
 
 TEST(TheoriesInAStrictScalar, OfWetShocks) {
   expect_bits_of_double([]<class T>(const T& zero) {
-    WetShock<T> shock{T(1) / T(100)};
-    shock.particles = 40;
+    const WetShock<T> shock{.loss = T(1) / T(100), .particles = 40};
     const T t(30);
     const WetFront<T> front(shock);
     const WetZone<T> zone(shock);

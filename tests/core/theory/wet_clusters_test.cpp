@@ -34,11 +34,7 @@ auto motion(const Force& force, const ClusterRules& rules, const ClusterStart& f
   return ClusterMotion<Force, Stepper>(force, rules, {first, second}, start, stepper(tolerance));
 }
 
-ClusterRules freely() {
-  ClusterRules rules;
-  rules.meeting = Meeting::pass;
-  return rules;
-}
+const ClusterRules freely{.meeting = Meeting::pass};
 
 // The paper's zone: u0 = 1/2, E_loss = 0.05.
 WetZone<double> paper_zone(double loss = 0.05) { return WetZone<double>(WetShock<double>{loss}); }
@@ -57,7 +53,7 @@ auto in_the_papers_zone(Meeting meeting, const ClusterStart& first, const Cluste
 TEST(WetClusters, ConstantMassIsPeriodicForever) {
   // x'' = -alpha sgn x from rest at a: x = a - alpha t^2/2, period 4 sqrt(2 a/alpha) = 16 for a = 1, alpha = 1/8.
   // Both cross the edge, and each other, at the same times.
-  auto run = motion(SignForce(0.125), freely(), {1, 0, 0}, {-1, 0, 0});
+  auto run = motion(SignForce(0.125), freely, {1, 0, 0}, {-1, 0, 0});
   double worst = 0;
   for (int k = 1; k <= 16000; ++k) {
     run.advance(k);
@@ -118,7 +114,7 @@ class Flights {
 };
 
 double error_of(double tolerance) {
-  auto run = motion(SignForce(0.05), freely(), {1, 0, 0.5}, {-1, 0, 0.5}, tolerance);
+  auto run = motion(SignForce(0.05), freely, {1, 0, 0.5}, {-1, 0, 0.5}, tolerance);
   Flights exact(0.05, 0.5, 1);
   double worst = 0;
   for (int k = 1; k <= 400; ++k) {
@@ -138,7 +134,7 @@ TEST(WetClusters, GrowingMassFollowsTheClosedForm) {
 TEST(WetClusters, SignForceHasTheExponentsOfItsAdiabaticInvariant) {
   // Rest points at a: a^{3/2} (alpha/M)^{1/2} is constant to the change of M in a period, P/t = 4 sqrt(2 a M/alpha)/t.
   const double alpha = 0.05, rate = 0.5;
-  auto run = motion(SignForce(alpha), freely(), {1, 0, rate}, {-1, 0, rate});
+  auto run = motion(SignForce(alpha), freely, {1, 0, rate}, {-1, 0, rate});
   struct Rest {
     double time, amplitude, mass;
   };
@@ -237,10 +233,7 @@ TEST(WetClusters, ClusterAtRestOnTheEdgeStaysThere) {
 // ---- meetings: no force, masses 1 + r t, both at the centre at t = 2 ----
 
 auto encounter(Meeting meeting, double loss, double left_rate, double right_rate) {
-  ClusterRules rules;
-  rules.meeting = meeting;
-  rules.loss = loss;
-  return motion(SignForce(0), rules, {-1, 0.5, left_rate}, {1, -0.5, right_rate});
+  return motion(SignForce(0), {.loss = loss, .meeting = meeting}, {-1, 0.5, left_rate}, {1, -0.5, right_rate});
 }
 
 TEST(ClusterMeeting, PassingCostsTheLossAndKeepsMomentum) {

@@ -5,7 +5,6 @@
 // it leaves out.
 #include "cradle/core/theory/wet_energy.hpp"
 
-#include <boost/multiprecision/cpp_int.hpp>
 #include <gtest/gtest.h>
 
 #include <map>
@@ -13,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "cradle/tests/core/rational.hpp"
 #include "cradle/tests/core/wet_reference.hpp"
 
 namespace cradle::test::wet_energy_test {
@@ -93,7 +93,6 @@ TEST(WetEnergy, LawIsThatOfTheRunUpToAFewLossesOverTheEnergy) {
 
 // The series, derived anew in exact rationals. Units e = u0 = l = 1. Polynomials in i and j by powers; phi is the
 // potential of the speeds, u = phi_i, v = phi_j, which u_j = v_i allows.
-using Rational = boost::multiprecision::cpp_rational;
 using Polynomial = std::map<std::pair<int, int>, Rational>;
 
 void add_product(Polynomial& sum, const Polynomial& a, const Polynomial& b, const Rational& factor) {

@@ -61,8 +61,7 @@ TEST_F(StepsOfPairs, MakeThemAgainWhereImpulsesRunFar) {
     x.push_back(place);
     v.push_back(T(static_cast<std::int64_t>(random() >> 40)) / T(1 << (dense ? 27 : 23)));
   }
-  const Scene<T> scene = std::make_shared<List<T>>(std::move(x), std::move(v));
-  const SlabsMade made = expect_same_in_steps<Equal>(scene, Inelastic<T>(T(1)), {1, 2, 5, 20}, all_ways());
+  const SlabsMade made = expect_same_in_steps<Equal>(list(x, v), Inelastic<T>(T(1)), {1, 2, 5, 20}, all_ways());
   EXPECT_GT(made.in_steps, 1000U);
 }
 

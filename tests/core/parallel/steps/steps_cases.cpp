@@ -12,7 +12,6 @@
 #include <string>
 #include <utility>
 
-#include "cradle/core/initial/cold.hpp"
 #include "cradle/core/laws/one_of.hpp"
 #include "cradle/tests/core/parallel/steps/ways.hpp"
 
@@ -25,11 +24,7 @@ using Several = OneOf<Law, SpeedDependent<double>>;
 
 std::uint64_t bits(double x) { return std::bit_cast<std::uint64_t>(x); }
 
-class Steps : public ::testing::Test {
-  void SetUp() override {
-    if (all_steps().empty()) GTEST_SKIP() << "built without Highway";
-  }
-};
+class Steps : public WithSteps {};
 
 TEST_F(Steps, RowsThatAreStreamed) { expect_same_by_all_laws<Equal>(rshock<double>(1400), {490, 495}, 0.5); }
 TEST_F(Steps, GasOnALine) { expect_same_by_all_laws<Equal>(gas<double>(800), {1, 100}, 0.5); }
@@ -67,8 +62,7 @@ TEST_F(Steps, RingsWithoutCutsThatAreDenseAtTheSeam) {
       x.push_back(place);
       v.push_back(static_cast<double>(random() >> 40) * (!dense ? 0x1p-23 : seed % 2 == 0 ? 0x1p-27 : 0));
     }
-    const Scene<double> scene = std::make_shared<List<double>>(x, v, std::vector<double>{}, place + 0x1p-30);
-    in_steps += expect_same_in_steps<Equal>(scene, Law(1), {5, 20}, ways).in_steps;
+    in_steps += expect_same_in_steps<Equal>(list(x, v, {}, place + 0x1p-30), Law(1), {5, 20}, ways).in_steps;
   }
   EXPECT_GT(in_steps, 10'000U);
 }

@@ -21,6 +21,12 @@
 
 namespace cradle::test {
 
+class WithSteps : public ::testing::Test {
+  void SetUp() override {
+    if (all_steps().empty()) GTEST_SKIP() << "built without Highway";
+  }
+};
+
 // On each kind of vectors that this processor has.
 inline std::vector<SegmentsAs> on_all_vectors(Segmentation how, unsigned threads) {
   std::vector<SegmentsAs> ways;
@@ -101,8 +107,7 @@ template <class T> Scene<T> random_scene(Dice& dice, bool unequal, double& durat
   duration = dice.one_of({1., 20., 60.}) * dice.uniform();
   if (!unequal && dice.below(4) == 0) {
     duration += static_cast<double>(n) * 0.2;
-    return std::make_shared<Rows<T>>(
-        symmetric_rows<T>(n, T(0.5), T(1), uniform_displacement(dice.one_of({0.4, 0.05, 1e-6}), dice.below(1000), 0)));
+    return displaced_rows<T>(n, uniform_displacement(dice.one_of({0.4, 0.05, 1e-6}), dice.below(1000), 0));
   }
   const bool ring = dice.below(3) == 0, lattice = dice.below(8) == 0;
   const double still = dice.one_of({0., 0., 0.7}), heavy = dice.one_of({1.0001, 3., 50.});
@@ -113,7 +118,7 @@ template <class T> Scene<T> random_scene(Dice& dice, bool unequal, double& durat
     if (unequal) m.push_back(T(dice.below(2) == 0 ? 1 : heavy));
   }
   const double last = static_cast<double>(n);
-  const Scene<T> scene = std::make_shared<List<T>>(x, v, m, T(ring ? last : 0.));
+  const Scene<T> scene = list(x, v, m, T(ring ? last : 0.));
   if (!with_walls || ring || dice.below(3) > 0) return scene;
   const auto wall = [&](double at) -> std::optional<Wall<T>> {
     if (dice.below(3) == 0) return {};

@@ -16,11 +16,7 @@ namespace cradle::test::wet_steps_test {
 using Chain = ClusterChain<double>;
 using Law = Wet<double>;
 
-class WetSteps : public ::testing::Test {
-  void SetUp() override {
-    if (all_steps().empty()) GTEST_SKIP() << "built without Highway";
-  }
-};
+class WetSteps : public WithSteps {};
 
 void expect_same(const Scene<double>& scene, const std::vector<int>& times, const std::vector<double>& losses,
                  double least_in_steps = 0.9) {
@@ -48,7 +44,7 @@ TEST_F(WetSteps, MakeOneOfSeveralLaws) {
   for (const bool sticky : {false, true}) {
     const Several law = sticky ? Several(Sticky<double>()) : Several(Law(0.001));
     const SlabsMade made =
-        expect_same_in_steps<Chain>(gas<double>(900), law, std::vector<int>{20}, on_all_vectors({.anywhere = true}, 1));
+        expect_same_in_steps<Chain>(gas<double>(900), law, {20}, on_all_vectors({.anywhere = true}, 1));
     EXPECT_EQ(made.in_steps > 0, !sticky);
   }
 }
@@ -57,9 +53,7 @@ TEST_F(WetSteps, MakeOneOfSeveralLaws) {
 // listed once.
 TEST_F(WetSteps, MakeACoolingGasInWhichNearlyAllMerge) {
   for (std::uint64_t seed = 1; seed < 5; ++seed) {
-    const Scene<double> ring =
-        std::make_shared<Ring<double>>(8000, 8000., 1., gaussian_velocity(seed, 0), uniform_displacement(0, seed, 0));
-    const SlabsMade made = expect_same_in_steps<Chain>(ring, Law(0.1), std::vector<int>{1000},
+    const SlabsMade made = expect_same_in_steps<Chain>(gaussian_ring(8000, 8000, seed, 0), Law(0.1), {1000},
                                                        {{{.collisions = 8, .steps = &all_steps().front()}, 2}});
     EXPECT_GT(static_cast<double>(made.in_steps), 0.9 * static_cast<double>(made.collisions));
   }
@@ -79,13 +73,12 @@ TEST_F(WetSteps, MakeThemAgainWhereParticlesRunFar) {
     v.push_back(speed(random) / (dense ? 30 : 1));
   }
   const SlabsMade made =
-      expect_same_in_steps<Chain>(std::make_shared<List<double>>(x, v), Law(1e-7), std::vector<int>{3, 20},
-                                  on_all_vectors({.gaps = 500, .anywhere = true}, 2));
+      expect_same_in_steps<Chain>(list(x, v), Law(1e-7), {3, 20}, on_all_vectors({.gaps = 500, .anywhere = true}, 2));
   EXPECT_GT(made.in_steps, 10'000U);
 }
 
 TEST_F(WetSteps, SlowFigure6) {
-  const SlabsMade made = expect_same_in_steps<Chain>(rshock<double>(50'000), Law(1e-4), std::vector<int>{2000, 3000},
+  const SlabsMade made = expect_same_in_steps<Chain>(rshock<double>(50'000), Law(1e-4), {2000, 3000},
                                                      {{{.steps = &all_steps().front()}, 2}});
   EXPECT_GT(static_cast<double>(made.in_steps), 0.95 * static_cast<double>(made.collisions));
 }

@@ -5,7 +5,6 @@
 // another motion, so nothing more is estimated.
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <tuple>

@@ -40,9 +40,8 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain : public Gap
   using Ends = GapEnds<T, Masses>;
 
  public:
-  using Ends::closing_when_due, Ends::rebound;
-  using Ends::falls, Ends::keys_are_exact, Ends::clock, Ends::local_time, Ends::slots, Ends::first;
-  using Ends::last, Ends::left, Ends::right, Ends::on_ring, Ends::particle, Ends::closing;
+  using Ends::falls, Ends::keys_are_exact, Ends::clock, Ends::local_time, Ends::slots, Ends::first, Ends::last;
+  using Ends::left, Ends::right, Ends::on_ring, Ends::particle, Ends::closing, Ends::closing_when_due;
   using typename Ends::Line;
 
   // Holds the gaps in motion and streams the others in as the fronts reach them; `hold_all` holds every gap from the

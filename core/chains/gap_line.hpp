@@ -4,7 +4,6 @@
 // its owner: by the chain (gap_chain.hpp), or by a segment, which works on a copy of a part of the line (segments.hpp).
 
 #include <cstddef>
-#include <optional>
 #include <tuple>
 #include <type_traits>
 #include <utility>

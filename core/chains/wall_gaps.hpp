@@ -4,7 +4,6 @@
 
 #include <array>
 #include <optional>
-#include <utility>
 
 #include "cradle/core/chains/gap_line.hpp"
 #include "cradle/core/chains/gravity.hpp"

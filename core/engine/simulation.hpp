@@ -36,7 +36,7 @@ class Simulation : public Readings<Chain> {
   using Read = Readings<Chain>;
 
  public:
-  using Read::falls, Read::last_collision_time;
+  using Read::last_collision_time;
 
   // Throws std::invalid_argument if the chain holds a number that is not finite.
   Simulation(Law law, Chain chain, Policy<T> policy = {}, int least_queue_bits = 3)

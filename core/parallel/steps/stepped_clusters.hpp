@@ -4,7 +4,6 @@
 // its copy anew and goes through its event loop.
 
 #include <array>
-#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <tuple>

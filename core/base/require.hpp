@@ -29,16 +29,13 @@ template <class Part> MessagePart message_part(const Part& part) {
 // Throws std::invalid_argument with a message of these parts. All conditions share it, so that each costs little code.
 [[noreturn, gnu::cold, gnu::noinline]] inline void refuse(std::initializer_list<MessagePart> parts) {
   std::string message;
-  for (const MessagePart& part : parts) {
-    if (const auto* text = std::get_if<std::string_view>(&part))
-      message += *text;
-    else if (const auto* number = std::get_if<double>(&part))
-      message += std::to_string(*number);
-    else if (const auto* whole = std::get_if<std::int64_t>(&part))
-      message += std::to_string(*whole);
+  const auto append = [&]<class Part>(const Part& part) {
+    if constexpr (std::same_as<Part, std::string_view>)
+      message += part;
     else
-      message += std::to_string(std::get<std::uint64_t>(part));
-  }
+      message += std::to_string(part);
+  };
+  for (const MessagePart& part : parts) std::visit(append, part);
   throw std::invalid_argument(message);
 }
 

@@ -45,19 +45,10 @@ concept ListsState = requires(X& x) {
 
 namespace detail {
 
-template <class X> inline constexpr bool is_sequence = false;
-template <class X, class A> inline constexpr bool is_sequence<std::vector<X, A>> = true;
-template <class X> inline constexpr bool is_sequence<std::deque<X>> = true;
-template <class X> inline constexpr bool is_map = false;
-template <class K, class V> inline constexpr bool is_map<std::map<K, V>> = true;
-template <class K, class V> inline constexpr bool is_map<std::unordered_map<K, V>> = true;
-template <class X> inline constexpr bool is_optional = false;
-template <class X> inline constexpr bool is_optional<std::optional<X>> = true;
-template <class X> inline constexpr bool is_pair = false;
-template <class A, class B> inline constexpr bool is_pair<std::pair<A, B>> = true;
-
-template <class X> inline constexpr bool is_variant = false;
-template <class... X> inline constexpr bool is_variant<std::variant<X...>> = true;
+template <class X, template <class...> class Of> inline constexpr bool is = false;
+template <class... A, template <class...> class Of> inline constexpr bool is<Of<A...>, Of> = true;
+template <class X> inline constexpr bool is_sequence = is<X, std::vector> || is<X, std::deque>;
+template <class X> inline constexpr bool is_map = is<X, std::map> || is<X, std::unordered_map>;
 // Lists that are stored as one block of memory.
 template <class X> inline constexpr bool is_plain = std::same_as<X, std::string>;
 template <class A> inline constexpr bool is_plain<std::vector<double, A>> = true;
@@ -77,9 +68,9 @@ template <class X> constexpr std::size_t least_bytes() {
     return 8;
   } else if constexpr (std::floating_point<X>) {
     return bytes_of<X>;
-  } else if constexpr (is_pair<X>) {
+  } else if constexpr (is<X, std::pair>) {
     return least_bytes<typename X::first_type>() + least_bytes<typename X::second_type>();
-  } else if constexpr (is_plain<X> || is_sequence<X> || is_map<X> || is_optional<X> || is_variant<X>) {
+  } else if constexpr (is_plain<X> || is_sequence<X> || is_map<X> || is<X, std::optional> || is<X, std::variant>) {
     return 8;
   } else if constexpr (ListsState<X>) {
     return []<class... F>(std::type_identity<std::tuple<F...>>) {
@@ -119,12 +110,12 @@ template <class To, class X> void save(To& to, const X& x) {
     const std::map<typename X::key_type, typename X::mapped_type> in_order(x.begin(), x.end());
     save(to, in_order.size());
     for (const auto& [key, value] : in_order) save(to, key), save(to, value);
-  } else if constexpr (detail::is_optional<X>) {
+  } else if constexpr (detail::is<X, std::optional>) {
     save(to, x.has_value());
     if (x) save(to, *x);
-  } else if constexpr (detail::is_pair<X>) {
+  } else if constexpr (detail::is<X, std::pair>) {
     save(to, x.first), save(to, x.second);
-  } else if constexpr (detail::is_variant<X>) {
+  } else if constexpr (detail::is<X, std::variant>) {
     save(to, x.index());
     std::visit([&](const auto& value) { save(to, value); }, x);
   } else if constexpr (ListsState<X>) {
@@ -156,7 +147,7 @@ template <class From, class X> void load(From& from, X& x) {
       load(from, key);
       load(from, x[key]);
     }
-  } else if constexpr (detail::is_optional<X>) {
+  } else if constexpr (detail::is<X, std::optional>) {
     bool there = false;
     load(from, there);
     if (!there) return x.reset();
@@ -165,9 +156,9 @@ template <class From, class X> void load(From& from, X& x) {
     }
     if (!x) throw std::invalid_argument("a state of something else: take the file from a copy");
     load(from, *x);
-  } else if constexpr (detail::is_pair<X>) {
+  } else if constexpr (detail::is<X, std::pair>) {
     load(from, x.first), load(from, x.second);
-  } else if constexpr (detail::is_variant<X>) {
+  } else if constexpr (detail::is<X, std::variant>) {
     std::uint64_t number = 0;
     load(from, number);
     if (number >= std::variant_size_v<X>) detail::refuse_number("of a kind that is not known", number);
@@ -228,11 +219,11 @@ template <class X> void append_shape(std::string& shape) {
     append_shapes<typename X::value_type>(shape, "[", "]");
   } else if constexpr (detail::is_map<X>) {
     append_shapes<typename X::key_type, typename X::mapped_type>(shape, "{", "}");
-  } else if constexpr (detail::is_optional<X>) {
+  } else if constexpr (detail::is<X, std::optional>) {
     append_shapes<typename X::value_type>(shape, "?", "");
-  } else if constexpr (detail::is_pair<X>) {
+  } else if constexpr (detail::is<X, std::pair>) {
     append_shapes<typename X::first_type, typename X::second_type>(shape, "", "");
-  } else if constexpr (detail::is_variant<X>) {
+  } else if constexpr (detail::is<X, std::variant>) {
     [&]<class... A>(std::type_identity<std::variant<A...>>) {
       append_shapes<A...>(shape, "<", ">");
     }(std::type_identity<X>{});

@@ -22,8 +22,9 @@ constexpr Notice& operator|=(Notice& a, Notice b) { return a = a | b; }
 constexpr Notice when(bool holds, Notice notice) {
   return static_cast<Notice>(static_cast<unsigned>(holds) * static_cast<unsigned>(notice));
 }
-constexpr bool includes(Notice notices, Notice one) {
-  return (static_cast<unsigned>(notices) & static_cast<unsigned>(one)) != 0;
+// Whether it has any of the others.
+constexpr bool includes(Notice notices, Notice others) {
+  return (static_cast<unsigned>(notices) & static_cast<unsigned>(others)) != 0;
 }
 
 // The request after a flight that ends at the given time since the origin, both as queue times.

@@ -144,12 +144,9 @@ template <Real T, class MassesOf> class GapLine {
       const Pair<T> before{closing(s), gaps[s].rest};
       const T over = exact_ ? T((before - outcome.closing - outcome.to_left - outcome.to_right).value()) : T(0);
       const bool both = outcome.to_left == outcome.to_right, left = outcome.to_right < outcome.to_left;
-      return ExactSpeedGains{{outcome.to_left, both   ? T(over / T(2))
-                                               : left ? over
-                                                      : T(0)},
-                             {outcome.to_right, both   ? T(over / T(2))
-                                                : left ? T(0)
-                                                       : over}};
+      const T share = both ? T(over / T(2)) : over, none(0);
+      return ExactSpeedGains{{outcome.to_left, both || left ? share : none},
+                             {outcome.to_right, both || !left ? share : none}};
     } else {
       return SpeedGains{outcome.to_left, outcome.to_right};
     }

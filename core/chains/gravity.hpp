@@ -15,6 +15,19 @@ namespace cradle {
 // constant factor per collision, as gaps do in other collapses.
 template <Real T> struct Rebound { T speed, height; };
 
+// Whether a collision with a wall under gravity, or where a wall is shaken, is below the law's cut-off. On an inelastic
+// floor particles collapse without any others, so collisions with walls below the cut-off are elastic too. This holds
+// also if the cut-off sets in slowly among particles: if it set in as slowly at the floor, a particle would come to
+// rest there only after exponentially many collisions.
+template <Real T, class Law> bool below_cutoff(const Law& law, const T& w) {
+  if constexpr (requires { law.below_cutoff(w); })
+    return law.below_cutoff(w);
+  else if constexpr (requires { law.cutoff(); })
+    return w < law.cutoff();
+  else
+    return false;
+}
+
 template <Real T> class Gravity {
  public:
   explicit Gravity(const Particles<T>& particles)
@@ -98,6 +111,18 @@ template <Real T> class Gravity {
     return wall.motion != nullptr ? wall.at(elapsed).wall.speed : T(0);
   }
 
+  // What comes of a collision at the speed w with a wall, which is at the end of the gap; elastic below the law's
+  // cut-off.
+  template <class Law>
+  Outcome<T> strike_wall(Walls<T>& walls, ParticleIndex gap, const Law& law, const T& w, const T& mass,
+                         const Pair<T>& elapsed, bool stays = false, bool rested = true) const {
+    const bool elastic = !stays && (!rested || below_cutoff(law, w));
+    const T restitution = stays ? T(0) : elastic ? T(1) : walls.wall(gap).restitution;
+    Outcome<T> outcome = walls.strike(gap, w, mass, restitution, shaken_at(gap, elapsed));
+    outcome.below_cutoff = elastic && walls.wall(gap).reflects();
+    return outcome;
+  }
+
   static auto state(auto& self) { return std::tie(self.resting_); }
   void loaded() {
     require_state(resting_ >= 0 && resting_ <= (piles_ ? count_ : 0), "pile");
@@ -140,19 +165,6 @@ template <Real T> class Gravity {
 template <class C> bool falls(const C& chain) {
   if constexpr (requires { chain.falls(); })
     return chain.falls();
-  else
-    return false;
-}
-
-// Whether a collision with a wall under gravity, or where a wall is shaken, is below the law's cut-off. On an inelastic
-// floor particles collapse without any others, so collisions with walls below the cut-off are elastic too. This holds
-// also if the cut-off sets in slowly among particles: if it set in as slowly at the floor, a particle would come to
-// rest there only after exponentially many collisions.
-template <Real T, class Law> bool below_cutoff(const Law& law, const T& w) {
-  if constexpr (requires { law.below_cutoff(w); })
-    return law.below_cutoff(w);
-  else if constexpr (requires { law.cutoff(); })
-    return w < law.cutoff();
   else
     return false;
 }

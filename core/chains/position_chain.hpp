@@ -210,18 +210,10 @@ template <Real T> class PositionChain {
 
   template <class Law> Outcome<T> strike_wall(const Law& law, Slot s, const T& time) {
     const Particle& struck = at(walls_.left_of(particle(s)) ? s + 1 : s);
-    if (falls()) {
-      bool rested = true;
-      if constexpr (LawWithMemory<Law, T>) rested = struck.rested(time, law.contact_time());
-      const T& w = closing_[s];
-      const Wall<T>& wall = walls_.wall(particle(s));
-      const bool elastic = !rested || below_cutoff(law, w);
-      Outcome<T> outcome = walls_.strike(particle(s), w, struck.m, elastic ? T(1) : wall.restitution,
-                                         field_.shaken_at(particle(s), since_start(time)));
-      outcome.below_cutoff = elastic && wall.reflects();
-      return outcome;
-    }
-    return walls_.strike(particle(s), closing_[s], struck.m);
+    if (!falls()) return walls_.strike(particle(s), closing_[s], struck.m);
+    bool rested = true;
+    if constexpr (LawWithMemory<Law, T>) rested = struck.rested(time, law.contact_time());
+    return field_.strike_wall(walls_, particle(s), law, closing_[s], struck.m, since_start(time), false, rested);
   }
   template <class Law, class Masses>
   Outcome<T> outcome_of(const Law& law, Slot s, const T& time, const Masses& masses) const {

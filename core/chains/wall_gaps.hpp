@@ -16,8 +16,7 @@ template <class Line> class WallGaps : public Gravity<typename Line::Scalar> {
 
  public:
   using Field::approach, Field::anywhere, Field::pulls, Field::at_wall, Field::may_miss, Field::above_pile;
-  using Field::approach_pile, Field::rebound, Field::shaken_at, Field::height, Field::pile_end, Field::resting,
-      Field::rest;
+  using Field::approach_pile, Field::rebound, Field::height, Field::pile_end, Field::resting, Field::rest;
   using Field::Field;
 
   // Calls f with the motion of the gaps of a line, some of which may be pulled or not.
@@ -76,17 +75,6 @@ template <class Line> class WallGaps : public Gravity<typename Line::Scalar> {
     const double time = queue_due(line, s);
     if constexpr (Line::Gaps::keys_are_exact) line.gaps[s].due = time;
     return time;
-  }
-  // What comes of a collision at the speed w with a wall, which is at the end of the gap; elastic below the law's
-  // cut-off.
-  template <class Law>
-  Outcome<T> strike_wall(Walls<T>& walls, ParticleIndex gap, const Law& law, const T& w, const T& mass,
-                         const Pair<T>& elapsed, bool stays = false, bool rested = true) const {
-    const bool elastic = !stays && (!rested || below_cutoff(law, w));
-    const T restitution = stays ? T(0) : elastic ? T(1) : walls.wall(gap).restitution;
-    Outcome<T> outcome = walls.strike(gap, w, mass, restitution, shaken_at(gap, elapsed));
-    outcome.below_cutoff = elastic && walls.wall(gap).reflects();
-    return outcome;
   }
   // The effect of a collision at a wall or beside the gap to one, off the hot path. `pile` particles are in the pile
   // after it; one that comes to rest on others does not move them. `renew` is called while the pile is as it was.

@@ -179,15 +179,9 @@ template <Real T> class StickyGas {
     lost_.add(left.mass * (right.mass / mass) * closing * closing / T(2));
     ++counts_.merges;
     ++counts_.collisions;
-    const MergedParticles& name = left.greatest < right.greatest ? right : left;
-    MergedParticles both{mass,
-                         left.moment + right.moment,
-                         left.momentum + right.momentum,
-                         T(0),
-                         left.first,
-                         left.count + right.count,
-                         name.heaviest,
-                         name.greatest};
+    MergedParticles both = left.greatest < right.greatest ? right : left;  // with its name
+    both.mass = mass, both.moment = left.moment + right.moment, both.momentum = left.momentum + right.momentum;
+    both.first = left.first, both.count = left.count + right.count;
     both.x = place(both);
     return both;
   }

@@ -89,9 +89,7 @@ template <Real T> class Walls {
   bool beside(std::int64_t gap) const { return left_of(gap) || right_of(gap); }
 
   // The collision of a particle of this mass with the wall at the gap, with closing speed w > 0.
-  Outcome<T> strike(std::int64_t gap, const T& w, const T& mass) {
-    return strike(gap, w, mass, walls_[at(left_of(gap) ? End::left : End::right)]->restitution);
-  }
+  Outcome<T> strike(std::int64_t gap, const T& w, const T& mass) { return strike(gap, w, mass, wall(gap).restitution); }
   // The same with another restitution than that of the wall, if it reflects, and at the speed towards the particles
   // at which it is shaken.
   Outcome<T> strike(std::int64_t gap, const T& w, const T& mass, const T& restitution, const T& shaken = T(0)) {
@@ -116,7 +114,7 @@ template <Real T> class Walls {
 
   // The outcome at the speed 1 if outcomes are proportional to the speed; no such collision is made in the run.
   std::optional<Outcome<T>> at_unit_speed(std::int64_t gap, const T& mass) const {
-    if (walls_[at(left_of(gap) ? End::left : End::right)]->temperature > 0) return {};
+    if (!wall(gap).reflects()) return {};
     return Walls(*this).strike(gap, T(1), mass);
   }
   bool give_energy() const {

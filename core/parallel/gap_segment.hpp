@@ -182,23 +182,20 @@ template <Real T, class Masses> class GapSegment {
     if (is_ring_) return {};
     if (!left_end_ && s + 1 - own_first_ < 2) report.left.push_back({s == own_first_, time, closing});
     if (!right_end_ && s - own_last_ < 2) report.right.push_back({s != own_last_, time, closing});
+    const auto reach = [&](bool at_wall, ParticleIndex end, Slot outermost, FrontMove<T>& front, const T& handed) {
+      if (at_wall) return;  // nothing to follow, nothing beyond
+      if (line_.particle(s) == end)
+        front.at_end.push_back({time, handed});
+      else if (s == outermost)
+        notice = Notice::needs_slots;  // no more particles have been taken along
+    };
     if (left_end_ && s <= reached_left_) {
       reached_left_ = s;
-      if (walls_.left_of(line_.particle(s)))
-        ;  // nothing to follow, nothing beyond
-      else if (line_.particle(s) == gaps_.first)
-        report.to_left.at_end.push_back({time, outcome.to_left});
-      else if (s == first_)
-        notice = Notice::needs_slots;  // no more particles have been taken along
+      reach(walls_.left_of(line_.particle(s)), gaps_.first, first_, report.to_left, outcome.to_left);
     }
     if (right_end_ && s >= reached_right_) {
       reached_right_ = s;
-      if (walls_.right_of(line_.particle(s)))
-        ;
-      else if (line_.particle(s) == gaps_.last)
-        report.to_right.at_end.push_back({time, outcome.to_right});
-      else if (s == last_)
-        notice = Notice::needs_slots;
+      reach(walls_.right_of(line_.particle(s)), gaps_.last, last_, report.to_right, outcome.to_right);
     }
     set_inner();
     return {(left_end_ || s >= own_first_) && (right_end_ || s <= own_last_), notice};

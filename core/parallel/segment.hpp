@@ -21,6 +21,9 @@
 
 namespace cradle {
 
+// What the plain loop handles.
+constexpr Notice for_plain_loop = Notice::origin_must_move | Notice::gap_below_floor | Notice::needs_slots;
+
 // The gaps that a segment owns, by slots of the chain, around the seam of a ring if need be.
 struct OwnedGaps {
   Slot first;
@@ -91,7 +94,7 @@ template <class Law, class Chain> class Segment {
  private:
   enum class Finish { all, contested, for_plain };
 
-  // Takes what is to be computed; false if there is nothing.
+  // Takes what is to be computed; false if there is nothing. `begin` fills the queue too.
   bool take(const Chain& chain, const OwnedGaps& own, std::size_t ghosts, Report& report) {
     report.left.clear(), report.right.clear(), report.observed.clear();
     report.nothing_left = report.plain = report.in_steps = false;
@@ -99,24 +102,15 @@ template <class Law, class Chain> class Segment {
     return part_.take(chain, own, ghosts, report);
   }
   bool begin(const Chain& chain, const OwnedGaps& own, std::size_t ghosts, Report& report) {
-    const bool some = take(chain, own, ghosts, report);
-    if (some) fill_queue();
-    return some;
-  }
-  void fill_queue() {
+    if (!take(chain, own, ghosts, report)) return false;
     const std::size_t slots = part_.last() + 3;
     if (queue_.slots() < slots || queue_.slots() > 4 * slots) queue_ = EventQueue(slots, Chain::keys_are_exact);
     queue_.clear();
     for (Slot s = part_.first(); s <= part_.last(); ++s) queue_.set(s, part_.queue_key(s));
     queue_.rebuild(part_.first(), part_.last());
     ties_.forget();
+    return true;
   }
-  // What the plain loop handles.
-  static bool is_for_plain(Notice notice) {
-    return includes(notice, Notice::origin_must_move) || includes(notice, Notice::gap_below_floor) ||
-           includes(notice, Notice::needs_slots);
-  }
-
   // What has become of the collision logged last.
   static void log(const Outcome<T>& outcome, bool own, Report& report) {
     if (!own) return report.observed.pop_back();
@@ -166,7 +160,7 @@ template <class Law, class Chain> class Segment {
       const auto [collision, own] = part_.collide(law, s, time, report);
       queue_.replace(collision.left, collision.due_left, s, collision.due, collision.right, collision.due_right);
       const Outcome<T>& outcome = collision.outcome;
-      if (collision.notice != Notice::none && is_for_plain(collision.notice)) [[unlikely]]
+      if (includes(collision.notice, for_plain_loop)) [[unlikely]]
         return Finish::for_plain;
       if (own || !Ledger<T>::in_any_order) part_.lose(s, outcome.energy_lost);
       if (exact && report.observe) log(outcome, own, report);

@@ -189,9 +189,7 @@ class StepLine {
       for (auto* list : {&low_struck, &low_to_left, &low_to_right, &low_after}) list->resize(gaps + tile);
       work.resize(16 * (gaps + tile));
     }
-    if (guarded_.size() < tiles()) {
-      guarded_.resize(tiles()), kept_at_.resize(tiles());
-    }
+    if (guarded_.size() < tiles()) guarded_.resize(tiles()), kept_at_.resize(tiles());
     if (kept_.size() < width_ * tile * tiles()) kept_.resize(width_ * tile * tiles());
     if (first.size() < gaps + tile) {
       for (auto* list : {&candidates, &waiting, &visited}) list->resize(3 * gaps + tile);

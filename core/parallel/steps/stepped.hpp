@@ -86,15 +86,10 @@ requires(StepNumbers<T>::template by_law<Law> && !Watched<Masses>) struct Steppe
         task.cutoff = of_speed->delta();
         lost = T(1);
         const auto &power = of_speed->power(), &rise = of_speed->rise();
-        task.of_speed = {of_speed->missing(),
-                         power.exponent(),
-                         power.ln2(),
-                         rise.all(),
-                         power.whole(),
-                         power.odd().data(),
-                         rise.reciprocals().data(),
-                         power.odd().size(),
-                         rise.reciprocals().size()};
+        StepRestitution& to = task.of_speed;
+        to.missing = of_speed->missing(), to.exponent = power.exponent(), to.whole = power.whole();
+        to.ln2 = power.ln2(), to.odd = power.odd().data(), to.odds = power.odd().size();
+        to.all = rise.all(), to.reciprocals = rise.reciprocals().data(), to.count = rise.reciprocals().size();
       }
       if constexpr (equal) lost = lost * part_->line_.masses.reduced_mass;
       Numbers::put(lost, task.lost, task.low.lost);
@@ -148,7 +143,7 @@ requires(StepNumbers<T>::template by_law<Law> && !Watched<Masses>) struct Steppe
     if (edge.notice != Notice::none) return false;
     if (edge.own) log(s, time, outcome.below_cutoff);
     const Notice notice = part_->strike_at_edge(left, s, right, time, outcome, Notice::none).notice;
-    if (includes(notice, Notice::origin_must_move) || includes(notice, Notice::gap_below_floor)) return false;
+    if (includes(notice, for_plain_loop)) return false;
     if (edge.own || !Ledger<T>::in_any_order) part_->lose(s, outcome.energy_lost);
     for (std::size_t k = 0; k < 3; ++k) {
       cells.gaps.set_lag(touched[k], lags[k]);
@@ -183,14 +178,9 @@ requires(StepNumbers<T>::template by_law<Law> && !Watched<Masses>) struct Steppe
   }
 
   void keep() override {
-    kept_ = {made_,
-             part_->line_.gaps.ledger(),
-             part_->edges(),
-             report_->left.size(),
-             report_->right.size(),
-             report_->to_left.at_end.size(),
-             report_->to_right.at_end.size(),
-             report_->observed.size()};
+    kept_.made = made_, kept_.ledger = part_->line_.gaps.ledger(), kept_.edges = part_->edges();
+    kept_.left = report_->left.size(), kept_.right = report_->right.size(), kept_.observed = report_->observed.size();
+    kept_.at_left = report_->to_left.at_end.size(), kept_.at_right = report_->to_right.at_end.size();
   }
   void restore() override {
     made_ = kept_.made;

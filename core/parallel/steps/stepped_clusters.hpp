@@ -92,9 +92,7 @@ requires(!Law::bounces_only && requires(const Law& law) {
     }
     const auto [collision, own] = part_->collide(*law_, s, time, *report_);
     const Outcome<double>& outcome = collision.outcome;
-    if (report_->nothing_left || includes(collision.notice, Notice::origin_must_move) ||
-        includes(collision.notice, Notice::gap_below_floor) || includes(collision.notice, Notice::needs_slots))
-      return false;
+    if (report_->nothing_left || includes(collision.notice, for_plain_loop)) return false;
     if (own) part_->lose(s, outcome.energy_lost);
     for (std::size_t k = 0; k < 3; ++k) {
       cells.gaps.set_lag(touched[k], lags[k]);
@@ -114,12 +112,8 @@ requires(!Law::bounces_only && requires(const Law& law) {
   void outcomes(const std::uint32_t*, std::size_t) override {}  // Wet is a law of vectors
 
   void keep() override {
-    kept_ = {made_,
-             part_->line_.gaps.ledger(),
-             part_->edges(),
-             report_->left.size(),
-             report_->right.size(),
-             report_->carried.size()};
+    kept_.made = made_, kept_.ledger = part_->line_.gaps.ledger(), kept_.edges = part_->edges();
+    kept_.left = report_->left.size(), kept_.right = report_->right.size(), kept_.carried = report_->carried.size();
   }
   void restore() override {
     made_ = kept_.made;

@@ -191,26 +191,24 @@ int step(StepLine& line, const StepTask& task, StepScalars& scalars, double end,
 
 std::size_t width() { return lanes; }
 
-template <template <StepLaw law, bool unequal> class Collisions, class... Arguments>
-bool run_by(const StepTask& task, StepLine& line, Arguments&... arguments) {
-  constexpr StepLaw hard = StepLaw::hard, soft = StepLaw::soft;
-  if (task.law == hard)
-    return task.unequal ? run_steps(step<Collisions<hard, true>>, line, task, arguments...)
-                        : run_steps(step<Collisions<hard, false>>, line, task, arguments...);
-  return task.unequal ? run_steps(step<Collisions<soft, true>>, line, task, arguments...)
-                      : run_steps(step<Collisions<soft, false>>, line, task, arguments...);
+template <template <StepLaw law, bool unequal> class Collisions, StepLaw law> Step by(const StepTask& task) {
+  return task.unequal ? step<Collisions<law, true>> : step<Collisions<law, false>>;
+}
+template <template <StepLaw law, bool unequal> class Collisions> Step by(const StepTask& task) {
+  return task.law == StepLaw::hard ? by<Collisions, StepLaw::hard>(task) : by<Collisions, StepLaw::soft>(task);
+}
+Step step_of(const StepTask& task) {
+#if CRADLE_PAIRS
+  if (task.pairs) return by<Pairs>(task);
+#endif
+  if (task.pairs) return nullptr;
+  if (task.law == StepLaw::wet) return step<WetCollisions>;
+  if (task.law == StepLaw::any) return step<Doubles<StepLaw::any, false>>;
+  return task.law == StepLaw::of_speed ? by<Doubles, StepLaw::of_speed>(task) : by<Doubles>(task);
 }
 bool run(StepLine& line, const StepTask& task, StepScalars& scalars, StepPace& pace, StepResult& result) {
-#if CRADLE_PAIRS
-  if (task.pairs) return run_by<Pairs>(task, line, scalars, pace, result);
-#endif
-  if (task.pairs) return false;
-  if (task.law == StepLaw::wet) return run_steps(step<WetCollisions>, line, task, scalars, pace, result);
-  if (task.law == StepLaw::any) return run_steps(step<Doubles<StepLaw::any, false>>, line, task, scalars, pace, result);
-  if (task.law == StepLaw::of_speed)
-    return task.unequal ? run_steps(step<Doubles<StepLaw::of_speed, true>>, line, task, scalars, pace, result)
-                        : run_steps(step<Doubles<StepLaw::of_speed, false>>, line, task, scalars, pace, result);
-  return run_by<Doubles>(task, line, scalars, pace, result);
+  const Step by_law = step_of(task);
+  return by_law != nullptr && run_steps(by_law, line, task, scalars, pace, result);
 }
 
 }  // namespace HWY_NAMESPACE

@@ -16,11 +16,6 @@ namespace cradle {
 // What steps leave to scalar code: collisions at cuts, fronts and walls, and laws that are not vectors.
 class StepScalars {
  public:
-  StepScalars() = default;
-  StepScalars(const StepScalars&) = delete;
-  StepScalars& operator=(const StepScalars&) = delete;
-  virtual ~StepScalars() = default;
-
   // Makes the collision at a gap; false where it is for the event loop, or comes in the wrong order. (At an edge, or
   // where particles merge.)
   virtual bool collide(std::size_t gap) = 0;
@@ -30,6 +25,9 @@ class StepScalars {
   // An undo copy of what all of this has entered anywhere.
   virtual void keep() = 0;
   virtual void restore() = 0;
+
+ protected:
+  ~StepScalars() = default;
 };
 
 // Of Inelastic (law.hpp), for a restitution from 1/2 on and below it; of SpeedDependent; by StepScalars::outcomes; or

@@ -1,9 +1,6 @@
 #pragma once
-// What the engine requires of a number: the four operations, an order, exact construction from integers and an explicit
-// conversion to double (for queue keys and float64 output, never for the dynamics). Literals are written T(2);
-// mathematical functions, needed by the wet law and by theory only, are found by argument-dependent lookup.
-//
-// Here too: error-free addition (Knuth's TwoSum, six operations, any magnitudes) and the compensated sum built on it.
+// What the engine requires of a number (README.md, Numbers); error-free addition (Knuth's TwoSum, six operations, any
+// magnitudes) and the compensated sum built on it.
 
 #include <bit>
 #include <cmath>

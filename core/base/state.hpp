@@ -1,10 +1,6 @@
 #pragma once
-// The state of a run as a value: a class lists its fields once,
-//
-//   static auto state(auto& self) { return std::tie(self.gap, self.time); }
-//
-// and saving, loading and comparing follow from the list. The inputs of a run (law, particles, policy) and data that
-// follow from other fields (the queue) are in no list. A class that must do or check something after loading has `void
+// The state of a run as a value. README.md (State) says how a class lists its fields, once, and which it does not list;
+// saving, loading and comparing follow from the list. A class that must do or check something after loading has `void
 // loaded()`, which throws std::invalid_argument if its fields contradict each other.
 //
 // Numbers are stored exactly, little-endian: integers in 8 bytes, floating point unchanged, other scalar types by a

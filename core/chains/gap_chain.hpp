@@ -1,25 +1,16 @@
 #pragma once
-// `GapChain` holds the particles as gaps and closing speeds: for two neighbours l and r the gap g >= 0 and the closing
-// speed w = v_l - v_r. A collision transfers an impulse J from left to right and changes three gaps:
-//
-//   w[i] -> w',   w[i-1] += J/m_l,   w[i+1] += J/m_r,   g[i] = 0 exactly.
-//
-// No gap is computed as a difference of positions. So gaps keep their relative precision down to underflow, however
-// small they are compared with the system. timed_gaps.hpp says how gaps are advanced and how rounding acts on them.
+// `GapChain` holds the particles as gaps and closing speeds: README.md (GapChain) says how, and why no gap is computed
+// as a difference of positions; timed_gaps.hpp says how gaps are advanced and how rounding acts on them.
 //
 // Under gravity (gravity.hpp) the gap to a wall is a parabola in time; the gap to a shaken wall is another curve.
 // Collisions at such a gap or beside it are made off the hot path, all others as without gravity. Only code off the hot
 // path asks whether there is gravity or a shaken wall.
 //
-// This file has the collisions. `GapChain` is derived from three classes, each of which is derived from the one before:
-// the gaps that are held (held_gaps.hpp), their positions and velocities (gap_places.hpp), and the ends of the active
-// zone (gap_ends.hpp).
+// This file has the collisions; the classes from which `GapChain` is derived have the gaps that are held
+// (held_gaps.hpp), their positions and velocities (gap_places.hpp), and the ends of the active zone (gap_ends.hpp).
 //
-// Particles of a row are added when they are hit (held_range.hpp). Velocities and positions are computed from two
-// anchors, particles at the two ends of the active zone whose flight is known (anchor.hpp). On a ring the gap after the
-// last slot is the first one; there positions come from the centre of mass, velocities from the total momentum.
-//
-// Several particles that rest on a wall, one on the other, are a pile: README.md (Piles) says what they do.
+// README.md says how particles of a row are added when they are hit (Streaming), and what several particles do that
+// rest on a wall, one on the other (Piles).
 
 #include <algorithm>
 #include <memory>

@@ -1,8 +1,8 @@
 #pragma once
 // The chain in absolute positions and velocities, as in conventional event-driven programs: every particle has a
 // position, a velocity and the time of its last collision, and differences of positions in absolute time give the next
-// collision of neighbours. It is plain on purpose: no streaming, no tuning. It is the reference twin of the chain in
-// gaps, and is compared with it in precision: in a collapsing core its differences lose their digits, which it counts.
+// collision of neighbours. README.md (PositionChain) says what it is for. In a collapsing core its differences lose
+// their digits, which it counts.
 // Under gravity particles fly along parabolas; shaken walls are where their motion says.
 
 #include <algorithm>

@@ -1,13 +1,7 @@
 #pragma once
-// Inelastic collapse: infinitely many collisions in a finite time, at a place where the intervals between collisions
-// shrink by a constant factor per cycle. The policy of a run is one of
-//
-//   cutoff   collisions below the law's velocity cut-off are elastic (as in the paper; nothing is done here)
-//   stop     exact dynamics; stop when the collapse time is known, or when a gap is below a given size
-//
-// README.md (Collapse) says when a collapse is settled, that is proved, how far it is then followed, and where more
-// than `few` particles stop without a proof. (Gaps shrink by 2^60 and more before particles that are squeezed between
-// clusters part.)
+// Inelastic collapse. README.md (Collapse) says what a run does about it, when a collapse is settled, that is proved,
+// how far it is then followed, and where more than `few` particles stop without a proof. (Gaps shrink by 2^60 and more
+// before particles that are squeezed between clusters part.)
 
 #include <algorithm>
 #include <cstdint>
@@ -24,7 +18,10 @@
 
 namespace cradle {
 
-enum class CollapsePolicy { cutoff, stop };
+enum class CollapsePolicy {
+  cutoff,  // the law prevents it; nothing is done here
+  stop     // exact dynamics; stop when the collapse time is known, or when a gap is below a given size
+};
 
 // What is known of a collapse when the run stops.
 template <Real T> struct CollapseReport {

@@ -3,9 +3,6 @@
 // change, and enters the loss in the ledger. The scalar, the law and the chain are template parameters. All rare work
 // is done between collisions, by `review`, off the hot path.
 //
-// The order of collisions is (exact time, position in the line). Where the queue's keys cannot decide which collision
-// is first, the exact times of all collisions that might be first are compared (ties.hpp).
-//
 // A run makes the same collisions with the same bits, however often `advance` is called and up to whichever times.
 
 #include <concepts>

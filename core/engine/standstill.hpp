@@ -1,14 +1,12 @@
 #pragma once
 // `Standstill` detects that time does not advance. Many particles may meet at one time and place: n(n - 1)/2 collisions
-// if they are elastic. If more collisions follow at the same time, the scalar type cannot distinguish their times, or
-// they never end: the collisions of very inelastic particles continue until their speeds underflow. A law with a
-// threshold ends them, but late (README.md, When a type resolves no more).
+// if they are elastic. README.md (When a type resolves no more) has the two bounds on collisions at one time, local and
+// since the start, and says why the run ends beyond them.
 //
-// Offsets from a moving origin distinguish times as long as the exponents of the type suffice, possibly for ever. So
-// there is a second bound, the same in every type and for every policy: on the collisions at one rounded time since the
-// start. A cut-off may end a collapse there, or a gap at which the run is to stop. n particles can collapse only if
-// 1 - eps is at least about pi/n: then their speeds fall by a factor exp(x) within n^2 x/pi collisions, and the bound
-// allows for a factor of 10^5000, or for that of the smallest gap to the one at which the run stops, if it is more.
+// The second one allows for a collapse that a cut-off ends, or a gap at which the run is to stop. n particles can
+// collapse only if 1 - eps is at least about pi/n: then their speeds fall by a factor exp(x) within n^2 x/pi
+// collisions, and the bound allows for a factor of 10^5000, or for that of the smallest gap to the one at which the run
+// stops, if it is more.
 
 #include <cstdint>
 #include <tuple>

@@ -1,13 +1,6 @@
 #pragma once
-// A closed form with error bounds decides whether two neighbouring gaps collapse, and when (README.md, The theorem).
-//
-// The last collision was at gap 1, at time t. One there that closes at w turns its closing speed into -r_1 w and adds
-// c_1 w to that of gap 2; r_2, c_2 likewise. Let u be the speed at which gap 1 opens, g gap 2, w its closing speed, and
-//
-//   S = c_1 c_2 - r_1 - r_2,  L = (S + sqrt(S^2 - 4 r_1 r_2))/2,  k = c_1/(L + r_1),  z = w - k u.
-//
-// The two collapse if and only if S >= 2 sqrt(r_1 r_2) and z > 0. Then t_c = t + g/z, and the intervals between
-// collisions at the same gap shrink by a factor that tends to r_1 r_2/L^2.
+// A closed form with error bounds decides whether two neighbouring gaps collapse, and when: README.md (The theorem) has
+// it, and the symbols of this file.
 
 #include <cmath>
 #include <optional>
@@ -19,8 +12,8 @@ namespace cradle {
 
 // Two gaps just after a collision at one of them, gap 1, "here".
 template <Real T> struct TwoGaps {
-  T opening;                      // u: r_1 times the closing speed of the last collision
-  T gap, closing;                 // g and w of gap 2, "there"
+  T opening;                      // r_1 w_0, w_0 the closing speed of the last collision
+  T gap, closing;                 // g and w_1 of gap 2, "there"
   T rebound_here, rebound_there;  // r_1, r_2
   T handed_there, handed_here;    // c_1: added there by a collision here, c_2: added here by one there
   T of_rebound, of_handed;        // relative errors of these

@@ -1,7 +1,6 @@
 #pragma once
 // Collisions of a time slab for an observer. Each segment logs its own (segment.hpp); all logs together are sorted by
-// (exact time, place), which is the order of the plain loop: it takes the first of those pending, and segments refuse a
-// collision that lets one become due that would have come before it (segments.hpp).
+// (exact time, place), which is the order of the plain loop: README.md (Observers) says why.
 //
 // The times of a time slab are spread over it about evenly, and those of a log nearly in order. So the collisions go
 // into as many buckets of time as there are of them; what is left to sort are those that share a bucket. Buckets are

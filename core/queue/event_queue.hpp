@@ -2,12 +2,10 @@
 // The event queue holds one key per gap in a binary tree of minima. Keys are updated in place; the root is the key of
 // the next gap.
 //
-// A key is a 64-bit integer: the bits of a non-negative double, the time of the gap's next collision counted from the
-// origin, with the lowest b bits replaced by the gap's slot. So keys are in the order of times up to a relative
-// difference of 2^(b - 52), and the root contains the slot of the next gap: no search down the tree is needed. Where
-// the times of keys are too close to be told apart, the caller compares exact times: `contested` says when that is
-// necessary, and `for_each_before` lists the candidates. The keys of wide scalar types are made of rounded times, which
-// may be off by two units of the last bit that a key keeps of a time; `slack_` allows for that.
+// README.md (The order of collisions) says what a key is, and how close the times of two keys may be. Where they are
+// too close to be told apart, the caller compares exact times: `contested` says when that is necessary, and
+// `for_each_before` lists the candidates. The keys of wide scalar types are made of rounded times, which may be off by
+// two units of the last bit that a key keeps of a time; `slack_` allows for that.
 
 #include <algorithm>
 #include <bit>

@@ -2,8 +2,7 @@
 // are sums of two doubles in two vectors. Operations are those of precision/double_double.hpp one for one, so that
 // their bits are the same. They need fused multiply-adds and vectors of four lanes at least.
 //
-// The key of a gap is the greater double of the exact time at which it is due. Keys that differ are in the order of
-// these times. A gap with the key of another one near it is not first: if that stops a step, the event loop decides.
+// README.md (Double-double) has the keys by which gaps are decided.
 
 #undef CRADLE_PAIRS
 #define CRADLE_PAIRS (HWY_NATIVE_FMA && HWY_MAX_BYTES >= 32)

@@ -24,10 +24,9 @@ template <Real T> struct Configuration {
   std::vector<T> closing_speed;  // as many, v_left - v_right
 
   // The sum of all gaps (closing speeds) subtracted from the distance (velocity difference) of the two outermost
-  // particles, whose flight is known independently; on a ring, from the circumference (from 0). This is the accumulated
-  // rounding of the run. There is none if it is not measured: where gaps are differences of positions, closing speeds
-  // are differences of velocities, or the flight of one of the two is not known. Chains with closing speeds distribute
-  // both errors over the positions and velocities given here; the others compute positions from the left.
+  // particles; on a ring, from the circumference (from 0): the accumulated rounding of the run, where it is measured
+  // (README.md, Closure). Chains with closing speeds distribute both errors over the positions and velocities given
+  // here; the others compute positions from the left.
   std::optional<T> closure_gap, closure_speed;
   // Whether velocities are sums of closing speeds, so that the rounding errors of all of them add up.
   bool speeds_are_sums = false;

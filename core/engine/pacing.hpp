@@ -1,16 +1,13 @@
 #pragma once
-// `Pacing` decides how often the event loop does work other than collisions, and when the origin of time moves. Both
-// depend on the history of collisions alone, not on the calls of `advance`.
+// `Pacing` decides how often the event loop does work other than collisions, and when the origin of time moves, by the
+// history of collisions alone: README.md (When the origin of time moves) says what for.
 //
-// In a small zone reviews come after numbers of collisions. A move of the origin costs as much as a few collisions per
-// gap: it comes with every second collision in a few-particle collapse and otherwise after about 32 collisions per
-// particle.
+// In a small zone reviews come after numbers of collisions. The origin moves with every second collision in a
+// few-particle collapse, and otherwise after about 32 collisions per particle.
 //
-// In a large zone time is divided into epochs: the time of the next move of the origin is known since the last move, so
-// that collisions far apart need no common order for it (segments.hpp). An epoch lasts for about 8 collisions per
-// active particle, or 32 if particles merge, estimated from the rate of the previous epoch. It ends early after a
-// collision at which the chain requests that, since the flight before it was too short for the time since the origin;
-// or after four times the expected collisions per particle.
+// In a large zone time is divided into epochs. An epoch lasts for about 8 collisions per active particle, or 32 if
+// particles merge, estimated from the rate of the previous epoch. It ends early after a collision at which the chain
+// requests that, or after four times the expected collisions per particle.
 
 #include <algorithm>
 #include <cstdint>

@@ -8,11 +8,7 @@
 //
 // The outcome says what the two particles do: bounce, pass through each other (Newton's cradle: the left one comes out
 // on the right) or merge. For an impulse J from left to right the left particle loses J/m_l and the right one gains
-// J/m_r.
-//
-// Inelastic law (paper, section II and III): w' = -eps w, energy lost mu w^2 (1 - eps^2)/2; below the velocity cut-off
-// delta the collision is elastic. The closing speed given to the neighbours, w - w', is computed such that the sum of
-// all closing speeds is kept: for eps >= 1/2 the impulse comes first, below it w' does (README.md says why).
+// J/m_r. README.md (Laws) has the laws, and says why their formulas are computed as they are.
 
 #include <cmath>
 #include <concepts>
@@ -93,6 +89,7 @@ template <class L> bool has_threshold(const L& law) {
     return false;
 }
 
+// Inelastic law (paper, section II and III): w' = -eps w; below the velocity cut-off delta the collision is elastic.
 template <Real T> class Inelastic {
  public:
   static constexpr bool bounces_only = true;
@@ -149,9 +146,8 @@ template <Real T> class Inelastic {
 //
 //   eps(w) = eps + (1 - eps) exp(-(w/delta)^sigma),
 //
-// elastic for slow collisions and with restitution eps for fast ones; sigma -> infinity is the plain law's cut-off. The
-// loss 1 - eps(w) = (1 - eps) E, E = 1 - exp(-(w/delta)^sigma), is computed first, to keep the digits of nearly elastic
-// collisions, which decide the fate of a slow gas. Collisions below delta are counted as below the cut-off.
+// elastic for slow collisions and with restitution eps for fast ones; sigma -> infinity is the plain law's cut-off.
+// Collisions below delta are counted as below the cut-off.
 template <Real T> class SpeedDependent {
  public:
   static constexpr bool bounces_only = true;
@@ -243,9 +239,8 @@ template <Real T> struct Sticky {
 };
 
 // Wet law (paper, section II): a collision costs E_loss, and the particles pass through each other; if their relative
-// kinetic energy mu w^2/2 does not exceed E_loss, they merge. With w_c = sqrt(2 E_loss/mu) it is w' = -sqrt((w - w_c)(w
-// + w_c)), since w^2 - w_c^2 loses half of the digits at the threshold, and J = 2 E_loss/(w - w'), never mu (w + w').
-// If w is not near w_c, the outcome is decided without the root, so that the processor predicts the branch.
+// kinetic energy mu w^2/2 does not exceed E_loss, they merge. If w is not near w_c = sqrt(2 E_loss/mu), the outcome is
+// decided without the root, so that the processor predicts the branch.
 template <Real T> class Wet {
  public:
   static constexpr bool bounces_only = false;

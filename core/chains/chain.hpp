@@ -48,8 +48,9 @@ concept Chain = Real<typename C::Scalar> && requires(const C chain, C changing, 
   { chain.due(s) } -> std::convertible_to<typename C::Scalar>;
   { chain.queue_due(s) } -> std::same_as<double>;
 
-  // Collisions after which a neighbouring gap is below the floor are noticed. The smaller gap beside the last
-  // collision; the least difference of two collision times that is resolved; what could not be resolved.
+  // Collisions after which a neighbouring gap is below the floor are noticed. The smaller gap beside the last collision
+  // at its time, far away beyond an end; the least difference of two collision times that is resolved; what could not
+  // be resolved.
   changing.set_floor(time);
   { chain.nearest_gap(s) } -> std::convertible_to<typename C::Scalar>;
   { chain.time_resolution(s, time) } -> std::convertible_to<typename C::Scalar>;
@@ -60,8 +61,8 @@ concept Chain = Real<typename C::Scalar> && requires(const C chain, C changing, 
   { chain.energy_lost() } -> std::convertible_to<typename C::Scalar>;
 
   // Reading, at a local time not before the last collision: a gap; the kinetic energy of all particles of the scene;
-  // the outermost particles that have collided, and the number of particles between them, both included; the
-  // configuration.
+  // the outermost particles that have collided, of which there must be some, and the number of particles between them,
+  // both included; the configuration.
   { chain.gap_at(s, time) } -> std::convertible_to<typename C::Scalar>;
   { chain.kinetic_energy(time) } -> std::convertible_to<typename C::Scalar>;
   { chain.front_left(time) } -> std::convertible_to<typename C::Scalar>;

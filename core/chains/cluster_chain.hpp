@@ -87,7 +87,6 @@ template <Real T> class ClusterChain : public ClusterPlaces<T> {
   }
 
   void set_floor(const T& floor) { line_.gaps.set_floor(floor); }
-  // The smaller gap next to the last collision, at its local time; beyond an end of the line it is far away.
   T nearest_gap(Slot s) const {
     const T far = far_away<T>();
     const Slot p = left(s), n = beyond_;

@@ -56,7 +56,6 @@ template <Real T> class ClusterPlaces {
 
   // ---- reading, at a local time not before the last collision
   T gap_at(Slot s, const T& time) const { return line_.gaps.gap_at(s, closing(s), time); }
-  // Positions of the outermost particles that have collided; there must be some.
   T front_left(const T& time) const {
     if (first() == range_.front_left()) return configuration(time).x.front();
     const Slot beside = left(range_.front_left());

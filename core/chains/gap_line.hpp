@@ -67,7 +67,6 @@ template <Real T, class MassesOf> class GapLine {
     sum.add(closing(s));
     if constexpr (watched) sum.add(gaps[s].rest);
   }
-  // Local time of the next collision of a gap that is closing.
   T due(Slot s) const { return gaps.due(s, closing(s)); }
   double queue_due(Slot s) const { return gaps.queue_due(s, closing(s)); }
 

@@ -48,8 +48,6 @@ template <Real T, class Masses> class GapPlaces : public HeldGaps<T, Masses> {
   }
 
   // ---- reading, at a local time not before the last collision
-
-  // Positions of the outermost particles that have collided; there must be some.
   T front_left(const T& time) const {
     const Pair<T> x = flight(left_, time).x;
     const ParticleIndex outermost = front_particle(End::left);  // next to the anchor, if not the anchor

@@ -1,6 +1,7 @@
 #pragma once
 // The gaps that a chain in gaps and closing speeds holds (gap_chain.hpp), with the masses between them, the walls, and
-// the two anchors that end the active zone: times, slots, and what each gap is at a time.
+// the two anchors that end the active zone: times, slots, and what each gap is at a time. What is asked of any chain is
+// explained in chain.hpp.
 
 #include <algorithm>
 #include <memory>
@@ -44,7 +45,6 @@ template <Real T, class Masses> class HeldGaps {
     return range_.has_fronts() ? front_particle(End::right) - front_particle(End::left) + 1 : 0;
   }
 
-  // Local time of the next collision of a gap that is closing.
   T due(Slot s) const {
     if constexpr (!keys_are_exact)
       if (wall_gaps_.pulls(particle(s))) return wall_gaps_.due(line_, s).value_or(far_away<T>());
@@ -69,9 +69,7 @@ template <Real T, class Masses> class HeldGaps {
     return meeting ? meeting->speed : T(0);
   }
 
-  // Collisions after which a neighbouring gap is below `floor` are noticed (gap_below_floor).
   void set_floor(const T& floor) { line_.gaps.set_floor(floor); }
-  // The smaller gap next to a collision, at its local time; beyond an end of the line it is far away.
   T nearest_gap(Slot s) const {
     const T far = far_away<T>();
     const T on_left = on_ring() || s > first() ? line_.gaps[left(s)].gap : far,
@@ -80,14 +78,12 @@ template <Real T, class Masses> class HeldGaps {
   }
   // Whether anything falls or is shaken.
   bool falls() const { return wall_gaps_.anywhere(); }
-  // After a collision at s, if it was with a floor (gravity.hpp).
   std::optional<Rebound<T>> rebound(Slot s) const {
     return wall_gaps_.rebound(particle(s), closing(s), line_.gaps.since_start(s));
   }
   const Account<T>& account() const { return line_.gaps.account(); }
   void lose(Slot s, const T& energy) { line_.gaps.lose(s, energy); }
   T energy_lost() const { return line_.gaps.energy_lost(first(), last()); }
-  // The smallest difference between two collision times that is resolved, as a time since the start.
   T time_resolution(Slot, const T& time) const { return line_.gaps.time_resolution(time); }
 
   // The outcome of a collision at the speed 1, if all outcomes are proportional to the speed.

@@ -115,7 +115,6 @@ template <Real T> class PositionChain {
     const T on_left = s > first() ? gap_at(s - 1, time) : far, on_right = s < last() ? gap_at(s + 1, time) : far;
     return on_left < on_right ? on_left : on_right;
   }
-  // After a collision at s, if it was with a floor (gravity.hpp).
   std::optional<Rebound<T>> rebound(Slot s) const {
     const T& time = at(s).time;
     return field_.rebound(particle(s), T(velocity(s, time) - velocity(s + 1, time)), since_start(time));
@@ -133,7 +132,6 @@ template <Real T> class PositionChain {
            (is_positive(slowest) ? T(T(8) * way / slowest) : way);
   }
 
-  // The outcome of a collision at the speed 1, if all outcomes are proportional to the speed.
   template <class Law> std::optional<Outcome<T>> at_unit_speed(const Law& law, Slot s) const {
     if (walls_.beside(particle(s)))
       return walls_.at_unit_speed(particle(s), at(walls_.left_of(particle(s)) ? s + 1 : s).m);

@@ -82,13 +82,14 @@ struct Totals {
   }
 };
 
-// The gaps beside the collisions: g -= w since, w += gain, due anew.
-HWY_INLINE Cells kick(const Cells& before, const Four& since, const Four& x, const Four& gain, Totals& made) {
+// The gaps beside the collisions, which have closed at `so_far` since their local times: g -= so_far since, and due
+// anew, since they close at `closing` now. `speed` is what their cells hold then.
+HWY_INLINE Cells kick(const Cells& before, const Four& so_far, const Four& since, const Four& x, const Four& speed,
+                      const Four& closing, Totals& made) {
   Cells now;
-  now.gap = before.gap - before.closing * since;
-  now.time = x;
-  now.closing = before.closing + gain;
-  now.due = now.closing > 0 ? x + now.gap / now.closing : all(StepLine::never);
+  now.gap = before.gap - so_far * since;
+  now.time = x, now.closing = speed;
+  now.due = closing > 0 ? x + now.gap / closing : all(StepLine::never);
   made.flown = least(since, made.flown);
   made.gap = least(now.gap, made.gap);
   return now;
@@ -165,8 +166,9 @@ HWY_INLINE void collide(const StepLine& line, Local& l, const StepTask& task, st
     since_left -= left.time < 0 ? places.of(l.lag - 1) : all(0);
     since_right -= right.time < 0 ? places.of(l.lag + 1) : all(0);
   }
-  const Cells now_left = kick(left, since_left, x, to_left, made),
-              now_right = kick(right, since_right, x, to_right, made);
+  const Four left_closing = left.closing + to_left, right_closing = right.closing + to_right;
+  const Cells now_left = kick(left, left.closing, since_left, x, left_closing, left_closing, made),
+              now_right = kick(right, right.closing, since_right, x, right_closing, right_closing, made);
   Cells{all(0), x, all(StepLine::never), after}.put_at(places, 0, l.due);
   now_left.put_at(places, -1, l.due), now_right.put_at(places, 1, l.due);
   const unsigned valid = l.firsts - k < 4 ? (1U << (l.firsts - k)) - 1 : 15;

@@ -107,19 +107,9 @@ struct WetCollisions {
       since_left -= left.time < 0 ? on_left.of(l.lag) : all(0);
       since_right -= right.time < 0 ? on_right.of(l.lag) : all(0);
     }
-    const auto kicked = [&](const Cells& before, const Four& so_far, const Four& since, const Four& speed,
-                            const Four& closing) {
-      Cells now;
-      now.gap = before.gap - so_far * since;
-      now.time = x, now.closing = speed;
-      now.due = closing > 0 ? x + now.gap / closing : all(StepLine::never);
-      made.flown = least(since, made.flown);
-      made.gap = least(now.gap, made.gap);
-      return now;
-    };
     Cells now{all(0), x, all(StepLine::never), sped};
-    Cells now_left = kicked(left, left.closing - own.closing, since_left, left.closing, left.closing - sped),
-          now_right = kicked(right, right.closing - speed_beyond, since_right, slowed, slowed - speed_beyond);
+    Cells now_left = kick(left, left.closing - own.closing, since_left, x, left.closing, left.closing - sped, made),
+          now_right = kick(right, right.closing - speed_beyond, since_right, x, slowed, slowed - speed_beyond, made);
     made.own_flown = least(x - own.time, made.own_flown);
     made.latest = x > made.latest ? x : made.latest;
     Four apart = sped - slowed;

@@ -2,8 +2,7 @@
 //
 //   FILE         the result of earlier calls, written at the end, in one step
 //   FILE.part    journal: replicas finished since then, appended in batches of about a hundredth of a second; it
-//   survives
-//                any end of the program
+//                survives any end of the program
 //   FILE.part.R  the same by rank R of an MPI job
 //
 // Running the same scene on the same FILE continues from there. A journal that has become large is rewritten as nodes
@@ -48,7 +47,6 @@ class EnsembleStore {
   /// Throws Error (Exit::bad_input) if `file` is there and holds more than replicas that are here too.
   void check_replaces(const std::string& file) const;
 
-  const Study& study() const { return study_; }
   const EnsembleStates& states() const { return states_; }
   EnsembleStates& states() { return states_; }
   bool result_there() const { return result_there_; }  // and holds all replicas

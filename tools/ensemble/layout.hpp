@@ -9,10 +9,8 @@
 #include <limits>
 #include <optional>
 #include <string>
-#include <tuple>
 #include <vector>
 
-#include "cradle/core/base/state.hpp"
 #include "cradle/tools/result/result.hpp"
 #include "cradle/tools/run/run.hpp"
 #include "cradle/tools/scene/scene.hpp"
@@ -36,14 +34,6 @@ struct ReplicaRow {
   RunEnd outcome = RunEnd::reached;
   std::uint64_t collisions = 0, merges = 0;
   std::vector<double> numbers;  // one for each of ReplicaLayout::numbers; NaN: none
-
-  static auto state(auto& self) {
-    return std::tie(self.index, self.outcome, self.collisions, self.merges, self.numbers);
-  }
-  void loaded() const {
-    require_state(index >> 63 == 0, "a replica beyond the last");  // the tree of replicas ends there
-    require_state(static_cast<std::size_t>(outcome) < outcome_count, "no outcome of a replica");
-  }
 };
 
 struct ReplicaLayout {

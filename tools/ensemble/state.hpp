@@ -9,7 +9,6 @@
 #include <mutex>
 #include <string>
 #include <tuple>
-#include <utility>
 #include <vector>
 
 #include "cradle/core/base/large_pages.hpp"

@@ -2,7 +2,6 @@
 // account gives rise to, and the attributes of its result.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 

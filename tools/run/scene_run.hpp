@@ -6,8 +6,6 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <string>
-#include <vector>
 
 #include "cradle/core/base/state_stream.hpp"
 #include "cradle/tools/engines/any_engine.hpp"
@@ -19,8 +17,6 @@ namespace cradle::tools {
 /// has one precision per process: a caller with several runs must call set_digits for a run before it uses that run.
 class SceneRun {
  public:
-  using Column = RunState::Column;  // of the particles, as in snapshots
-
   explicit SceneRun(const Scene& scene) : scene_(scene) {}
   SceneRun(const SceneRun&) = delete;
   SceneRun& operator=(const SceneRun&) = delete;
@@ -43,12 +39,10 @@ class SceneRun {
   /// Null while the run is in progress.
   const RunOutcome* over() const { return over_ ? &*over_ : nullptr; }
   virtual const Counts& counts() const = 0;
-  /// The texts of these have all digits of the run's precision.
+  /// Its text has all digits of the run's precision.
   virtual Number time() const = 0;
-  virtual Number energy() const = 0;  // kinetic, of all particles of the scene
-  virtual std::vector<double> column(Column which) = 0;
-  virtual std::vector<std::string> column_text(Column which) = 0;
-  virtual const std::vector<ParticleIndex>& index() = 0;
+  /// The state at this time.
+  virtual const RunState& now() = 0;
 
   /// Gives the rows recorded so far to the sink.
   virtual void put_rows() = 0;

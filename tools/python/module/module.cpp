@@ -209,7 +209,7 @@ PYBIND11_MODULE(_live, module) {
            [](HeldRun& held, const std::string& path, bool force) {
              held.use([&](LiveRun& run) { run.write(path, force ? Force::yes : Force::no); });
            })
-      .def_property_readonly("index", reads([](SceneRun& run) { return read_only(run.index()); }))
+      .def_property_readonly("index", reads([](SceneRun& run) { return read_only(run.now().index()); }))
       .def_property_readonly("name", reads([](SceneRun& run) { return run.scene().name; }))
       .def_property_readonly("scene", reads([](SceneRun& run) { return effective_toml(run.scene()); }))
       .def_property_readonly("until", reads([](SceneRun& run) { return run.scene().run.until.text; }))
@@ -218,8 +218,8 @@ PYBIND11_MODULE(_live, module) {
       .def_property_readonly("merges", reads([](SceneRun& run) { return run.counts().merges; }))
       .def_property_readonly("time", reads([](SceneRun& run) { return run.time().value; }))
       .def_property_readonly("time_text", reads([](SceneRun& run) { return run.time().text(); }))
-      .def_property_readonly("energy", reads([](SceneRun& run) { return run.energy().value; }))
-      .def_property_readonly("energy_text", reads([](SceneRun& run) { return run.energy().text(); }))
+      .def_property_readonly("energy", reads([](SceneRun& run) { return run.now().state().energy.value; }))
+      .def_property_readonly("energy_text", reads([](SceneRun& run) { return run.now().state().energy.text(); }))
       // None during the run, then how it ended: outcome, exit status of `cradle run`, what that prints, its warning.
       .def_property_readonly("over", reads([](SceneRun& run) -> py::object {
                                const RunOutcome* over = run.over();
@@ -228,13 +228,13 @@ PYBIND11_MODULE(_live, module) {
                                return py::make_tuple(std::string(end.text), static_cast<int>(end.status), over->report,
                                                      over->warning);
                              }));
-  using Column = SceneRun::Column;
+  using Column = RunState::Column;
   for (const auto& [name, column] :
        {std::pair("x", Column::x), std::pair("v", Column::v), std::pair("m", Column::m), std::pair("gap", Column::gap),
         std::pair("closing_speed", Column::closing_speed)}) {
-    run_class.def_property_readonly(name,
-                                    reads([which = column](SceneRun& run) { return read_only(run.column(which)); }));
+    run_class.def_property_readonly(
+        name, reads([which = column](SceneRun& run) { return read_only(run.now().column(which)); }));
     run_class.def_property_readonly((std::string(name) + "_text").c_str(),
-                                    reads([which = column](SceneRun& run) { return run.column_text(which); }));
+                                    reads([which = column](SceneRun& run) { return run.now().column_text(which); }));
   }
 }

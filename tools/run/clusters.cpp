@@ -24,10 +24,6 @@ constexpr double tolerance = 1e-12;
 using Stepper = odeint::result_of::make_dense_output<odeint::runge_kutta_dopri5<theory::ClusterState>>::type;
 using Motion = theory::ClusterMotion<theory::ZoneForce, Stepper>;
 
-theory::WetZone<double> zone_of(const Scene& scene) {
-  return theory::WetZone<double>({scene.law.loss.value, scene.initial.speed.value, scene.initial.spacing.value});
-}
-
 Motion motion_of(const Scene& scene, const theory::WetZone<double>& zone) {
   const Initial& initial = scene.initial;
   const auto meeting = static_cast<theory::Meeting>(initial.meeting);
@@ -128,7 +124,7 @@ RunOutcome run_clusters(const Scene& scene, const RunOptions& options, Sink& sin
   const auto started = std::chrono::steady_clock::now();
   if (options.observer != nullptr)
     throw Error({"", 0, "initial.type"}, "no collisions to compare", "clusters, a model", "give a scene of particles");
-  const auto zone = zone_of(scene);
+  const theory::WetZone<double> zone({scene.law.loss.value, scene.initial.speed.value, scene.initial.spacing.value});
   Motion motion = motion_of(scene, zone);
   const double loss = scene.initial.meeting == scene::Meeting::energy ? scene.law.loss.value : 0;
   Recorder recorder;
@@ -152,10 +148,9 @@ RunOutcome run_clusters(const Scene& scene, const RunOptions& options, Sink& sin
   end.merges = recorder.merges();
   end.energy = recorder.energy();
   std::vector<Attribute> attributes = provenance(scene, precision_name(scene.run), end_row(end.end).text);
-  for (const Attribute& attribute :
-       {Attribute("integrator", std::string("Dormand-Prince 5(4), steps end where the force jumps")),
-        Attribute("relative_tolerance", tolerance), Attribute("absolute_tolerance", tolerance)})  // x in L, v in u0
-    attributes.push_back(attribute);
+  attributes.emplace_back("integrator", std::string("Dormand-Prince 5(4), steps end where the force jumps"));
+  attributes.emplace_back("relative_tolerance", tolerance);
+  attributes.emplace_back("absolute_tolerance", tolerance);  // x in L, v in u0
   std::move(recorder).put_tables(sink);
   sink.add(meetings_table(motion.meetings()));
   sink.add(force_table(zone));

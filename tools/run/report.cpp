@@ -8,6 +8,7 @@
 
 #include "cradle/precision/bin_float.hpp"
 #include "cradle/tools/record/rows.hpp"
+#include "cradle/tools/scene/decimal_parts.hpp"
 #include "cradle/tools/support/table.hpp"
 
 namespace cradle::tools {
@@ -20,14 +21,10 @@ std::string place(ParticleIndex left) {
 }
 
 // The decimal exponent of a number's first digit; none for 0.
-std::optional<int> first_digit(const std::string& text) {
-  const auto exponent = text.find_first_of("eE");
-  const std::string mantissa = text.substr(0, exponent);
-  const auto first = mantissa.find_first_of("123456789");
-  if (first == std::string::npos) return {};
-  const auto point = std::min(mantissa.find('.'), mantissa.size());
-  const int place = static_cast<int>(point) - static_cast<int>(first) - (first < point ? 1 : 0);
-  return place + (exponent == std::string::npos ? 0 : std::stoi(text.substr(exponent + 1)));
+std::optional<std::int64_t> first_digit(const std::string& text) {
+  const auto decimal = canonical_decimal(text);
+  const DecimalParts parts = decimal ? parts_of(*decimal) : DecimalParts();
+  return parts.digits.empty() ? std::nullopt : std::optional(parts.exponent - 1);
 }
 
 // A double may be 0 where the number is not.
@@ -55,7 +52,7 @@ std::string within(const Number& x, const Number& error) {
   const auto exponent = text.find_first_of("eE");
   std::string mantissa = text.substr(0, exponent);
   const auto first = mantissa.find_first_of("123456789");
-  auto wanted = std::max(*of_number - *of_error + 2, 1);
+  auto wanted = std::max<std::int64_t>(*of_number - *of_error + 2, 1);
   std::size_t end = first;
   for (; end < mantissa.size() && wanted > 0; ++end) wanted -= mantissa[end] != '.';
   if (const auto point = mantissa.find('.'); point != std::string::npos) end = std::max(end, point);
@@ -184,13 +181,6 @@ std::string exhausted_warning(const Number& time, std::uint64_t collisions, cons
                      time.text(), collisions, precision_name(run),
                      stops ? ", and that this is an inelastic collapse is not proved" : "", remedies);
 }
-// How a run ended, from the engine's status; `order_lost` is from the account.
-RunEnd end_of(Status status, bool order_lost) {
-  if (status == Status::collapsed) return RunEnd::collapsed;
-  if (status == Status::exhausted) return RunEnd::exhausted;
-  if (status == Status::interrupted) return RunEnd::interrupted;
-  return order_lost ? RunEnd::order_lost : RunEnd::reached;
-}
 
 // About how many digits of the energy at the end are right. C collisions of N particles each round a speed by eps,
 // together by eps sqrt(1 + C/N), and change the energy by twice that. If the chain holds closing speeds, the error is
@@ -253,11 +243,15 @@ std::string guard_message(const ReportedGuard& g, const ReportedAccount& account
 
 RunOutcome outcome_of(const Scene& scene, const AnyEngine& engine, const RunState& now, Status status) {
   RunOutcome outcome;
-  outcome.end = end_of(status, engine.account().order_lost > 0);
   if (status == Status::collapsed) {
     const ReportedCollapse found = engine.collapse();
-    if (!found.settled) outcome.end = scene.run.stop_gap ? RunEnd::small_gap : RunEnd::unproved;
+    outcome.end = found.settled ? RunEnd::collapsed : scene.run.stop_gap ? RunEnd::small_gap : RunEnd::unproved;
     outcome.collapsed_at = found.settled ? found.time.value : found.last_collision.value;
+  } else {
+    outcome.end = status == Status::exhausted       ? RunEnd::exhausted
+                  : status == Status::interrupted   ? RunEnd::interrupted
+                  : engine.account().order_lost > 0 ? RunEnd::order_lost
+                                                    : RunEnd::reached;
   }
   outcome.collisions = engine.counts().collisions, outcome.merges = engine.counts().merges;
   outcome.time = now.time.meant.value;

@@ -24,9 +24,7 @@ std::vector<Attribute> provenance(const Scene& scene, const std::string& precisi
 
 Scene scene_in(const std::vector<Attribute>& attributes, const std::string& file) {
   Scene scene = parse_scene(attribute<std::string>(attributes, "scene", file), file);
-  for (const auto& [name, value] : attributes)
-    if (name == "name")
-      if (const auto* text = std::get_if<std::string>(&value)) scene.name = *text;
+  if (const auto* name = find_attribute<std::string>(attributes, "name")) scene.name = *name;
   return scene;
 }
 

@@ -83,20 +83,6 @@ template <class Condition> void wait(Condition condition) {
   while (!condition()) std::this_thread::sleep_for(1ms);
 }
 
-int status_of(const std::exception_ptr& error, std::string& message) {
-  try {
-    std::rethrow_exception(error);
-  } catch (const Error& known) {
-    message = known.what();
-    return known.exit_code();
-  } catch (const std::exception& other) {
-    message = other.what();
-  } catch (...) {
-    message = "an exception without a message";
-  }
-  return static_cast<int>(Exit::bad_input);
-}
-
 class MpiProcesses : public Processes {
  public:
   MpiProcesses(int processes_launched, Interrupt& interrupt);
@@ -157,15 +143,18 @@ bool MpiProcesses::together(const std::function<void()>& step) {
 // Ends the job if a step of one rank throws: other ranks, which may wait for it, are ended by the launcher. Their
 // replicas are in their journals.
 template <class Step> void MpiProcesses::or_abandon(Step step) const {
-  try {
-    step();
-  } catch (...) {
-    std::string message;
-    const int status = status_of(std::current_exception(), message);
-    fmt::print(stderr, "cradle: rank {}: {}\n", rank_, message);
+  const auto abandon = [this](Exit status) {
+    fmt::print(stderr, "cradle: rank {}: {}\n", rank_, message_of_exception());
     std::fflush(stderr);
     std::this_thread::sleep_for(500ms);  // else Open MPI 5 may discard the message
-    MPI_Abort(MPI_COMM_WORLD, status);
+    MPI_Abort(MPI_COMM_WORLD, static_cast<int>(status));
+  };
+  try {
+    step();
+  } catch (const Error& error) {
+    abandon(error.status);
+  } catch (...) {
+    abandon(Exit::bad_input);
   }
 }
 
@@ -198,7 +187,6 @@ void MpiProcesses::lead(WorkQueue& queue, JobQueue all, const std::function<void
   std::vector<bool> here(static_cast<std::size_t>(size_), true);
   int others = size_ - 1;
   bool stopped = false;
-  const auto stop = [this] { return Reply{Order::stop, 0, 0, 0, static_cast<std::uint64_t>(interrupt().signal())}; };
   for (bool closed = false;;) {
     const bool idle = queue.idle(!closed);
     if (!closed && queue.empty()) {
@@ -206,9 +194,10 @@ void MpiProcesses::lead(WorkQueue& queue, JobQueue all, const std::function<void
       own ? queue.put(*own) : queue.close();
       closed = !own;
     }
-    if (interrupt().signal() != 0 && !std::exchange(stopped, true))
+    if (const int signal = interrupt().signal(); signal != 0 && !std::exchange(stopped, true))
       for (int rank = 1; rank < size_; ++rank)
-        if (here[static_cast<std::size_t>(rank)]) send(stop(), rank, from_leader);
+        if (here[static_cast<std::size_t>(rank)])
+          send(Reply{.order = Order::stop, .signal = static_cast<std::uint64_t>(signal)}, rank, from_leader);
     for (int rank = sender(MPI_ANY_SOURCE, to_leader); rank >= 0; rank = sender(MPI_ANY_SOURCE, to_leader)) {
       const auto report = receive<Report>(rank, to_leader);
       others_took(report.taken);

@@ -55,11 +55,6 @@ std::uint64_t JobQueue::left() const {
   return sum;
 }
 
-bool OneProcess::together(const std::function<void()>& step) {
-  step();
-  return true;
-}
-
 int OneProcess::share(const std::vector<JobRange>& jobs, const std::function<void(const NextJob&)>& work,
                       const std::function<void(std::uint64_t)>&) {
   JobQueue queue(jobs);

@@ -5,11 +5,10 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
-#include <exception>
 #include <functional>
+#include <future>
 #include <mutex>
 #include <optional>
-#include <thread>
 
 #include "cradle/tools/ensemble/processes.hpp"
 
@@ -19,11 +18,10 @@ class WorkQueue {
  public:
   /// Begins work(next) at once. `put` adds jobs until it is closed. An interrupt ends the work early.
   WorkQueue(const std::function<void(const NextJob&)>& work, const Interrupt& interrupt)
-      : interrupt_(interrupt), thread_([this, work] { run(work); }) {}
-  ~WorkQueue() {
-    close();
-    thread_.join();
-  }
+      : interrupt_(interrupt), work_(std::async(std::launch::async, [this, work] {
+          work([this](std::uint64_t most) { return next(most); });
+        })) {}
+  ~WorkQueue() { close(); }  // and waits for the work
   WorkQueue(const WorkQueue&) = delete;
   WorkQueue& operator=(const WorkQueue&) = delete;
 
@@ -48,29 +46,17 @@ class WorkQueue {
     return taken_;
   }
 
-  /// True when the work has returned; throws what the work threw. Waits a moment for that or, if requested, until the
-  /// last job is taken.
+  /// True when the work has returned; throws what the work threw. Waits a moment first or, if requested, until the last
+  /// job is taken.
   bool idle(bool or_empty) {
     std::unique_lock lock(mutex_);
-    changed_.wait_for(lock, std::chrono::milliseconds(1), [&] { return idle_ || (or_empty && jobs_.left() == 0); });
-    if (error_) std::rethrow_exception(error_);
-    return idle_;
+    changed_.wait_for(lock, std::chrono::milliseconds(1), [&] { return or_empty && jobs_.left() == 0; });
+    if (work_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return false;
+    work_.get();
+    return true;
   }
 
  private:
-  void run(const std::function<void(const NextJob&)>& work) {
-    std::exception_ptr error;
-    try {
-      work([this](std::uint64_t most) { return next(most); });
-    } catch (...) {
-      error = std::current_exception();
-    }
-    const std::scoped_lock lock(mutex_);
-    error_ = error;
-    idle_ = true;
-    changed_.notify_all();
-  }
-
   std::optional<JobRange> next(std::uint64_t most) {
     std::unique_lock lock(mutex_);
     for (;;) {
@@ -89,10 +75,9 @@ class WorkQueue {
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   JobQueue jobs_{{}};
-  bool closed_ = false, idle_ = false;
+  bool closed_ = false;
   std::uint64_t taken_ = 0;
-  std::exception_ptr error_;
-  std::thread thread_;  // last, since it uses all of the above
+  std::shared_future<void> work_;  // last, since it uses all of the above
 };
 
 }  // namespace cradle::tools

@@ -6,7 +6,6 @@
 
 #include "cradle/tools/record/rows.hpp"
 #include "cradle/tools/result/growing_tables.hpp"
-#include "cradle/tools/support/errors.hpp"
 
 namespace cradle::tools {
 
@@ -36,14 +35,17 @@ Column rows_of(const Column& column, std::size_t first, std::size_t last) {
 
 }  // namespace
 
+Error damaged_ensemble(const Place& place, const std::string& found) {
+  return {place, "a damaged ensemble", found, "take it from a copy, or run it again", Exit::io};
+}
+
 ReplicaTables kept_tables(ReplicaIndex replica, const Result& run) {
   ReplicaTables kept;
   for (const Group& group : run.groups) {
     if (!is_kept(group.name)) continue;
     const std::size_t rows = group.columns.front().rows();
     Group table{below + group.name, {}, {{"replica", "1", "initial.replica of the run", Rows(rows, replica)}}};
-    for (const Attribute& attribute : group.attributes)
-      if (attribute.first == "time") table.attributes.push_back(attribute);
+    if (const auto* time = find_attribute<double>(group.attributes, "time")) table.attributes = {{"time", *time}};
     table.columns.insert(table.columns.end(), group.columns.begin(), group.columns.end());
     for (Column& column : table.columns)
       if (auto* numbers = std::get_if<std::vector<double>>(&column.values))
@@ -80,9 +82,7 @@ KeptReplicas separated_tables(const Result& result, const std::string& folder, c
     const bool whole =
         replica != nullptr && std::all_of(table.columns.begin(), table.columns.end(),
                                           [&](const Column& c) { return c.width == 1 && c.rows() == replica->size(); });
-    if (!whole)
-      throw Error({file, 0, table.name}, "a damaged ensemble", "columns of different lengths",
-                  "take it from a copy, or run it again", Exit::io);
+    if (!whole) throw damaged_ensemble({file, 0, table.name}, "columns of different lengths");
     for (std::size_t first = 0, last = 0; first < replica->size(); first = last) {
       while (last < replica->size() && (*replica)[last] == (*replica)[first]) ++last;
       Group one{table.name.substr(folder.size()), table.attributes, {}};

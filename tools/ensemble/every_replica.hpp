@@ -11,6 +11,7 @@
 
 #include "cradle/core/ensemble/ensemble.hpp"
 #include "cradle/tools/result/result.hpp"
+#include "cradle/tools/support/errors.hpp"
 
 namespace cradle::tools {
 
@@ -18,6 +19,9 @@ namespace cradle::tools {
 using ReplicaTables = std::vector<Group>;
 /// Of several replicas.
 using KeptReplicas = std::map<ReplicaIndex, ReplicaTables>;
+
+/// What to throw where a file or a record does not hold what an ensemble writes.
+Error damaged_ensemble(const Place& place, const std::string& found);
 
 ReplicaTables kept_tables(ReplicaIndex replica, const Result& run);
 

@@ -189,8 +189,7 @@ void EnsembleState::read(const Result& result, const std::string& file) {
   for (const Column& column : layout_.numbers) numbers.push_back(&get<double>(table, column.name, file));
   for (const Column& column : table.columns)
     if (column.rows() != index.size())
-      throw Error({file, 0, ""}, "a damaged ensemble", "columns of /replicas of different lengths", "run it again",
-                  Exit::io);
+      throw damaged_ensemble({file, 0, ""}, "columns of /replicas of different lengths");
   std::set<ReplicaIndex> stopped;
   for (std::size_t k = 0; k < index.size(); ++k) {
     const auto how = static_cast<RunEnd>(std::min<std::uint64_t>(outcome[k], outcome_count - 1));

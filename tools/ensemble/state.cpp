@@ -39,12 +39,6 @@ void ReplicaTable::loaded() const {
   }
 }
 
-ReplicaRow ReplicaTable::operator[](std::size_t k) const {
-  const auto numbers = std::span(numbers_).subspan(k * width_, width_);
-  const auto of_row = std::span(integers_).subspan(k * integers, integers);
-  return {of_row[0], static_cast<RunEnd>(of_row[1]), of_row[2], of_row[3], {numbers.begin(), numbers.end()}};
-}
-
 std::vector<std::size_t> ReplicaTable::order() const {
   std::vector<std::size_t> rows(size());
   std::iota(rows.begin(), rows.end(), std::size_t{0});
@@ -105,26 +99,14 @@ void EnsembleState::take(EnsembleState& other) {
   for (TreeNode& node : other.tree_.nodes()) tree_.add(std::move(node));
 }
 
-void EnsembleState::check_length(std::size_t entries) const {
-  if (entries != layout_.entries)
-    throw Error({}, "an ensemble of other quantities", fmt::format("{} numbers a replica", entries),
-                fmt::format("this version records {}: use the program that wrote it", layout_.entries), Exit::io);
-}
-
-namespace {
-
-Error damaged(const std::string& from, const std::string& found) {
-  return {{from, 0, ""}, "a damaged ensemble", found, "take it from a copy, or run it again", Exit::io};
-}
-
-}  // namespace
-
 void EnsembleState::take(TreeNode&& node, const std::string& from) {
   const Moments& m = node.moments;
-  const auto wrong = [&](const std::string& found) { return damaged(from, found); };
+  const auto wrong = [&](const std::string& found) { return damaged_ensemble({from, 0, ""}, found); };
   if (node.level > 62 || m.replicas > node.range().count)
     throw wrong(fmt::format("{} replicas in a node of level {}", m.replicas, node.level));
-  if (m.replicas > 0) check_length(m.entries());
+  if (m.replicas > 0 && m.entries() != layout_.entries)
+    throw Error({}, "an ensemble of other quantities", fmt::format("{} numbers a replica", m.entries()),
+                fmt::format("this version records {}: use the program that wrote it", layout_.entries), Exit::io);
   for (const std::size_t size : {m.squares.size(), m.least.size(), m.greatest.size()})
     if (size != m.entries()) throw wrong("statistics of different lengths");
   if (!m.counts.empty() && (m.counts.size() != m.entries() ||
@@ -139,7 +121,7 @@ void EnsembleState::take(TreeNode&& node, const std::string& from) {
 
 void EnsembleState::take_counts(std::size_t spread, std::vector<std::uint64_t> counts, const std::string& from) {
   if (spread >= spreads_.size() || counts.size() != spreads_[spread].counts.all_counts().size())
-    throw damaged(from, fmt::format("{} counts for the spread {}", counts.size(), spread));
+    throw damaged_ensemble({from, 0, ""}, fmt::format("{} counts for the spread {}", counts.size(), spread));
   Histograms& all = spreads_[spread].counts;
   Histograms other(all.bins(), all.entries());
   other.set_all_counts(std::move(counts));
@@ -159,9 +141,8 @@ void EnsembleState::check_replicas(const std::string& file) const {
     in_table += table_.outcome(k) != RunEnd::failed;
   }
   if (!same || in_table != in_statistics)
-    throw Error({file, 0, name("replicas")}, "a damaged ensemble",
-                fmt::format("{} replicas listed, statistics of {}", table_.size(), tree_.size()),
-                "take it from a copy, or run it again", Exit::io);
+    throw damaged_ensemble({file, 0, name("replicas")},
+                           fmt::format("{} replicas listed, statistics of {}", table_.size(), tree_.size()));
 }
 
 // ---- as records
@@ -213,7 +194,7 @@ void EnsembleState::apply(EnsembleRecord&& record) {
       }))
     return;
   if (record.rows.size() > 0 && record.rows.numbers() != table_.numbers())
-    throw damaged(from, fmt::format("{} numbers a row", record.rows.numbers()));
+    throw damaged_ensemble({from, 0, ""}, fmt::format("{} numbers a row", record.rows.numbers()));
   for (TreeNode& node : record.nodes) take(std::move(node), from);
   const std::scoped_lock lock(mutex_);
   table_.add(record.rows);
@@ -222,7 +203,7 @@ void EnsembleState::apply(EnsembleRecord&& record) {
   std::size_t wanted = 0;
   for (const Spread& spread : spreads_) wanted += spread.quantity.size();
   if (wanted == 0 ? !record.to_spread.empty() : record.to_spread.size() % wanted != 0)
-    throw damaged(from, fmt::format("{} numbers for spreads", record.to_spread.size()));
+    throw damaged_ensemble({from, 0, ""}, fmt::format("{} numbers for spreads", record.to_spread.size()));
   for (auto at = record.to_spread.begin(); at != record.to_spread.end();)
     for (auto& [quantity, counts] : spreads_) {
       counts.add({at, at + static_cast<std::ptrdiff_t>(quantity.size())});

@@ -29,7 +29,6 @@ class ReplicaTable {
   void add(const ReplicaTable& other);
   std::size_t size() const { return integers_.size() / integers; }
   std::size_t numbers() const { return width_; }
-  ReplicaRow operator[](std::size_t k) const;
   /// Rows [first, last).
   ReplicaTable part(std::size_t first, std::size_t last) const;
   ReplicaIndex index(std::size_t k) const { return integers_[k * integers]; }
@@ -117,7 +116,6 @@ class EnsembleState {
   };
 
   std::string name(const std::string& below) const { return group_.empty() ? below : group_ + "/" + below; }
-  void check_length(std::size_t entries) const;
   // These check everything, since it comes from a file or another process.
   void take_counts(std::size_t spread, std::vector<std::uint64_t> counts, const std::string& from);
   void take(TreeNode&& node, const std::string& from);

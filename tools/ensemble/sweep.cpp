@@ -60,15 +60,14 @@ Group sweep_summary(const std::vector<SweepPoint>& points, const EnsembleStates&
     const auto order = replicas.order();
     const auto mean = [&](const Column& about, auto of) {
       std::vector<double> values;
-      for (const std::size_t k : order) values.push_back(of(replicas[k]));
+      for (const std::size_t k : order) values.push_back(static_cast<double>(std::invoke(of, replicas, k)));
       put_mean(table, p, about, values);
     };
-    mean({"collisions", "1", "collisions", {}},
-         [](const ReplicaRow& row) { return static_cast<double>(row.collisions); });
-    mean({"merges", "1", "merges", {}}, [](const ReplicaRow& row) { return static_cast<double>(row.merges); });
+    mean({"collisions", "1", "collisions", {}}, &ReplicaTable::collisions);
+    mean({"merges", "1", "merges", {}}, &ReplicaTable::merges);
     const auto& numbers = state.layout().numbers;
     for (std::size_t i = 0; i < numbers.size(); ++i)
-      mean(numbers[i], [i](const ReplicaRow& row) { return row.numbers[i]; });
+      mean(numbers[i], [i](const ReplicaTable& all, std::size_t k) { return all.number(k, i); });
   }
   group.columns = std::move(table.columns);
   return group;

@@ -37,7 +37,7 @@ void check_digits(const Study& study) {
 // Quotes a path for a shell.
 std::string quoted(const std::string& path) {
   const auto plain = [](unsigned char c) { return std::isalnum(c) != 0 || std::strchr("._-+/", c) != nullptr; };
-  return std::all_of(path.begin(), path.end(), plain) ? path : "'" + path + "'";
+  return std::ranges::all_of(path, plain) ? path : "'" + path + "'";
 }
 
 // The command that runs this replica alone, with the settings of its point.
@@ -131,15 +131,6 @@ void work(EnsembleStore& store, const EnsembleOptions& options, const Processes&
       [&] { return processes.interrupt().signal() != 0; });
 }
 
-EnsembleOutcome outcome_of(const EnsembleStore& store, const std::string& file) {
-  EnsembleOutcome end;
-  end.replicas = store.replicas();
-  end.outcome = store.outcome();
-  end.warning = failure_warning(store.states(), file);
-  if (!end.warning.empty()) end.status = Exit::lost;
-  return end;
-}
-
 // The part of rank 0, which handles the files.
 EnsembleOutcome lead(EnsembleStore& store, const EnsembleOptions& options, const std::string& file,
                      Processes& processes, const std::vector<JobRange>& jobs) {
@@ -150,18 +141,21 @@ EnsembleOutcome lead(EnsembleStore& store, const EnsembleOptions& options, const
       [&](const NextJob& next) { work(store, options, processes, next, [&](std::uint64_t n) { progress.done(n); }); },
       [&](std::uint64_t replicas) { progress.done(replicas); });
   EnsembleOutcome end;
+  end.fresh = fresh;
   if (signal == 0) {
     processes.gather([](const PutRecord&) {}, [&](std::string_view record) { store.apply(record); });
     if (fresh > 0 || !store.result_there())
       store.finish();
     else
       store.drop_journals();
-    end = outcome_of(store, file);
+    end.replicas = store.replicas();
+    end.outcome = store.outcome();
+    end.warning = failure_warning(store.states(), file);
+    if (!end.warning.empty()) end.status = Exit::lost;
   } else {
     store.sync();
     end.status = status_of_signal(signal);
   }
-  end.fresh = fresh;
   return end;
 }
 
@@ -191,7 +185,7 @@ EnsembleOutcome run_study(const Study& study, const EnsembleOptions& options, co
     jobs = jobs_left(*store, options.replicas);
   });
   ready = ready && processes.together([&] {  // now that rank 0 has read and removed the journals of an earlier job
-    if (rank != 0 || !jobs.empty()) store->start_journal(rank, options.replicas, options.journal_bytes);
+    if (rank != 0 || !jobs.empty()) store->start_journal(rank, options.replicas);
   });
   if (!ready) return {};
   processes.interrupt().heed();

@@ -17,18 +17,16 @@ struct EnsembleOptions {
   ReplicaRange replicas;  // of every point: initial.replica of the runs
   unsigned threads = 0;   // of each rank; 0: one per processor
   ProgressLine::Show progress = ProgressLine::Show::on_terminal;
-  Force force = Force::no;                               // begin anew, and replace what is there
-  std::uint64_t journal_bytes = std::uint64_t{1} << 26;  // a larger journal is rewritten as statistics
+  Force force = Force::no;    // begin anew, and replace what is there
   ReplicaRunner runner = {};  // instead of the program's own runs; if it throws, that replica has failed
 };
 
 struct EnsembleOutcome {
-  Exit status = Exit::done;    // if interrupted or terminated, finished replicas are in the journal
-  std::uint64_t fresh = 0;     // replicas that were run now
-  std::uint64_t replicas = 0;  // in the output now, those of earlier calls included
-  std::string outcome;         // how they ended: "990 reached the end, 10 inelastic collapse"
-  std::string account,
-      warning;  // about journals that were read, replicas that failed or lost order: for standard error
+  Exit status = Exit::done;      // if interrupted or terminated, finished replicas are in the journal
+  std::uint64_t fresh = 0;       // replicas that were run now
+  std::uint64_t replicas = 0;    // in the output now, those of earlier calls included
+  std::string outcome;           // how they ended: "990 reached the end, 10 inelastic collapse"
+  std::string account, warning;  // for standard error: of journals that were read, replicas that failed or lost order
 };
 
 /// Runs the wanted replicas of every point that `file` and its journals do not have yet, and writes the file. Throws

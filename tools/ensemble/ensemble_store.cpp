@@ -231,10 +231,7 @@ std::uint64_t EnsembleStore::replicas() const { return replicas_in(states_); }
 
 std::string EnsembleStore::outcome() const {
   EnsembleState::Outcomes outcomes{};
-  for (const auto& state : states_) {
-    const auto of_state = state->outcomes();
-    for (std::size_t k = 0; k < outcomes.size(); ++k) outcomes[k] += of_state[k];
-  }
+  for (const auto& state : states_) std::ranges::transform(outcomes, state->outcomes(), outcomes.begin(), std::plus());
   std::string text;
   for (std::size_t k = 0; k < outcomes.size(); ++k)
     if (outcomes[k] > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", outcomes[k], run_ends[k].text);
@@ -252,7 +249,6 @@ Result EnsembleStore::result() const {
                        {"outcome", outcome()},
                        {"replicas", replicas()},
                        {"identity", identity_}};
-  result.attributes.insert(result.attributes.end(), study_.attributes.begin(), study_.attributes.end());
   if (study_.summary) result.groups = study_.summary(states_);
   for (const auto& state : states_)
     for (Group& group : state->groups()) result.groups.push_back(std::move(group));

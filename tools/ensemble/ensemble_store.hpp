@@ -53,8 +53,8 @@ class EnsembleStore {
 
   /// Starts to write replicas to a journal. Rank 0 writes FILE.part, which states the wanted replicas from the
   /// beginning; another rank writes its own, which appears with its first replica. A journal larger than `largest`
-  /// bytes is rewritten.
-  void start_journal(unsigned rank, ReplicaRange wanted, std::uint64_t largest);
+  /// bytes is rewritten as statistics.
+  void start_journal(unsigned rank, ReplicaRange wanted, std::uint64_t largest = std::uint64_t{1} << 26);
   /// Adds finished replicas. May be called from several threads.
   void add(EnsembleRecord&& replicas);
   /// Syncs the journal to the disk, so that it survives a crash of the machine.

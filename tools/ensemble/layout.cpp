@@ -11,8 +11,6 @@ namespace cradle::tools {
 
 namespace {
 
-bool of_series(const std::string& group) { return group == "series" || group.starts_with("series/"); }
-
 [[noreturn]] void no_record_of(const std::string& group, const std::string& name) {
   throw std::logic_error(fmt::format("a run recorded no {}/{}, which others of its scene have", group, name));
 }
@@ -27,16 +25,6 @@ std::size_t samples_taken(const std::vector<double>& time, const std::vector<dou
   std::size_t taken = std::min(time.size(), planned.size());
   if (taken > 0 && time[taken - 1] != planned[taken - 1]) --taken;
   return taken;
-}
-
-bool ended_early(RunEnd outcome) { return end_row(outcome).status == Exit::collapse || outcome == RunEnd::exhausted; }
-
-// The measurements that ensembles of a scene average, with their numbers.
-std::vector<std::pair<std::size_t, const MeasurementRow*>> measured(const Scene& scene) {
-  std::vector<std::pair<std::size_t, const MeasurementRow*>> rows;
-  for (const MeasurementRow* row : measurement_rows())
-    if (row->averaged && row->wanted(scene)) rows.emplace_back(row_number(row->name), row);
-  return rows;
 }
 
 constexpr const char* collapse_time = "collapse_time";
@@ -71,7 +59,9 @@ ReplicaLayout replica_layout(const Scene& scene) {
         {group, column.name, column.unit, column.description, layout.entries, rows, column.width, number});
     layout.entries += layout.quantities.back().size();
   };
-  const auto rows = measured(scene);
+  std::vector<std::pair<std::size_t, const MeasurementRow*>> rows;  // that ensembles average, with their numbers
+  for (const MeasurementRow* row : measurement_rows())
+    if (row->averaged && row->wanted(scene)) rows.emplace_back(row_number(row->name), row);
   for (const auto& [number, row] : rows)
     for (const Group& group : row->growing ? row->growing(scene) : std::vector<Group>())
       for (std::size_t k = 0; k < group.columns.size(); ++k)
@@ -106,15 +96,8 @@ ReplicaLayout replica_layout(const Scene& scene) {
 }
 
 ReplicaRow ReplicaLayout::row(std::uint64_t index, const RunOutcome& run) const {
-  ReplicaRow row;
-  put_row(index, run, row);
-  return row;
-}
-
-void ReplicaLayout::put_row(std::uint64_t index, const RunOutcome& run, ReplicaRow& row) const {
-  row.index = index, row.collisions = run.collisions, row.merges = run.merges;
-  row.outcome = end_row(run.end).status == Exit::collapse ? RunEnd::collapsed : run.end;
-  row.numbers.assign(numbers.size(), missing);
+  const RunEnd outcome = end_row(run.end).status == Exit::collapse ? RunEnd::collapsed : run.end;
+  ReplicaRow row{index, outcome, run.collisions, run.merges, std::vector<double>(numbers.size(), missing)};
   row.numbers.front() = run.energy;
   const auto put = [&](std::string_view name, double value) {
     for (std::size_t k = 1; k < numbers.size(); ++k)
@@ -123,16 +106,16 @@ void ReplicaLayout::put_row(std::uint64_t index, const RunOutcome& run, ReplicaR
   };
   if (run.collapsed_at) put(collapse_time, *run.collapsed_at);
   for (const auto& [name, value] : run.summary) put(name, value);
+  return row;
 }
 
 std::vector<double> ReplicaLayout::values(const RunOutcome& run) const {
-  const Group* table = run.result.find("series");
-  if (table == nullptr) no_record_of("series", "time");
   SeriesNumbers series;
-  for (const Column& column : table->columns) {
-    series.emplace_back();
-    for (std::size_t i = 0; i < column.rows() * column.width; ++i) series.back().push_back(at(column.values, i));
-  }
+  if (const Group* table = run.result.find("series"))
+    for (const Column& column : table->columns) {
+      series.emplace_back();
+      for (std::size_t i = 0; i < column.rows() * column.width; ++i) series.back().push_back(at(column.values, i));
+    }
   std::vector<double> numbers_of_run;
   put_values(run.end, series, run.result.groups, numbers_of_run);
   return numbers_of_run;
@@ -143,7 +126,7 @@ void ReplicaLayout::put_values(RunEnd end, const SeriesNumbers& series, const st
   values.assign(entries, missing);
   if (series.empty()) no_record_of("series", "time");
   const std::size_t samples = samples_taken(series.front(), std::get<std::vector<double>>(time.values));
-  const bool early = ended_early(end);
+  const bool early = end_row(end).status == Exit::collapse || end == RunEnd::exhausted;
   if (!early && samples != time.rows()) throw std::logic_error("a run that reached its end has not taken all samples");
   const auto wrong = [](const Quantity& of) {
     return std::logic_error(fmt::format("{}/{} is not of the size that others of its scene have", of.group, of.name));
@@ -156,7 +139,7 @@ void ReplicaLayout::put_values(RunEnd end, const SeriesNumbers& series, const st
       continue;
     }
     const auto table = std::ranges::find(tables, quantity.group, &Group::name);
-    const bool of_times = of_series(quantity.group);
+    const bool of_times = quantity.group == "series" || quantity.group.starts_with("series/");
     if (!of_times && early && table == tables.end()) continue;  // the run ended before this profile
     const Column* column = table == tables.end() ? nullptr : table->find(quantity.name);
     if (column == nullptr) no_record_of(quantity.group, quantity.name);

@@ -57,7 +57,6 @@ struct ReplicaLayout {
   void put_values(RunEnd end, const SeriesNumbers& series, const std::vector<Group>& tables,
                   std::vector<double>& values) const;
   ReplicaRow row(std::uint64_t index, const RunOutcome& run) const;
-  void put_row(std::uint64_t index, const RunOutcome& run, ReplicaRow& row) const;
 };
 
 /// Throws Error, naming the key, if the scene cannot be run as an ensemble.

@@ -26,9 +26,6 @@ ReplicaRun::ReplicaRun(const EnsembleState& ensemble, const ReplicaRunner& runne
     : ensemble_(ensemble), runner_(runner), options_{Progress::Show::never, nullptr, &interrupt},
       scene_(replica_scene(ensemble.scene(), 0)) {}
 
-// With all of its tables.
-RunOutcome ReplicaRun::whole_run() const { return runner_ ? runner_(scene_, options_) : run_scene(scene_, options_); }
-
 const RunOutcome& ReplicaRun::run_again() {
   numbers_.begin_again();
   if (run_)
@@ -42,14 +39,15 @@ const RunOutcome& ReplicaRun::run_again() {
 void ReplicaRun::add(ReplicaIndex replica, EnsembleRecord& to) {
   const ReplicaLayout& layout = ensemble_.layout();
   scene_.initial.replica = replica;
+  ReplicaRow row;
   ReplicaTables kept;
   try {
     const auto finished = [&](const RunOutcome& run) {
       if (run.end == RunEnd::interrupted) throw ReplicaAbandoned();
-      layout.put_row(replica, run, row_);
+      row = layout.row(replica, run);
     };
     if (runner_ || scene_.output.every_replica || scene_.initial.type == InitialType::clusters) {
-      const RunOutcome run = whole_run();
+      const RunOutcome run = runner_ ? runner_(scene_, options_) : run_scene(scene_, options_);  // with all its tables
       finished(run);
       values_ = layout.values(run);
       if (scene_.output.every_replica) kept = kept_tables(replica, run.result);
@@ -69,7 +67,7 @@ void ReplicaRun::add(ReplicaIndex replica, EnsembleRecord& to) {
     run_.reset();
     return ensemble_.put_failure(to, replica, message_of_exception());
   }
-  ensemble_.put(to, row_, values_);
+  ensemble_.put(to, row, values_);
   if (!kept.empty()) to.kept.emplace(replica, std::move(kept));
 }
 

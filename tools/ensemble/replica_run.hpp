@@ -35,7 +35,6 @@ class ReplicaRun {
     ReplicaLayout::SeriesNumbers series;
   };
 
-  RunOutcome whole_run() const;
   const RunOutcome& run_again();
 
   const EnsembleState& ensemble_;
@@ -44,7 +43,6 @@ class ReplicaRun {
   Scene scene_;
   Numbers numbers_;
   std::unique_ptr<SceneRun> run_;
-  ReplicaRow row_;
   std::vector<double> values_;
 };
 

@@ -25,7 +25,6 @@ struct Study {
   Scene scene;  // the file's; for a sweep the scene that is varied
   std::vector<Point> points;
   std::vector<SpreadRequest> spreads = {};
-  std::vector<Attribute> attributes = {};                                 // of the file, besides the usual ones
   std::function<std::vector<Group>(const EnsembleStates&)> summary = {};  // written before the points
 
   /// Equal for the same ensembles by the same version of the program.

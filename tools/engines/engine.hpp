@@ -88,13 +88,12 @@ template <Real T, class Run> class EngineOf final : public Engine<T> {
     return has_chain;
   }
   Status advance(const T& until, const Observer<T>& observer) override {
-    if constexpr (!std::same_as<RunSegments, NoSegments>) {
+    if constexpr (!std::same_as<RunSegments, NoSegments>)
       return observer ? run_.advance(until, segments_, observer) : run_.advance(until, segments_);
-    } else {
-      if constexpr (has_chain)
-        if (observer) return run_.advance(until, observer);
+    else if constexpr (has_chain)
+      return observer ? run_.advance(until, observer) : run_.advance(until);
+    else
       return run_.advance(until);
-    }
   }
 
   Status step(std::uint64_t& left, const T& until, const Observer<T>& observer) override {
@@ -124,31 +123,25 @@ template <Real T, class Run> class EngineOf final : public Engine<T> {
   }
   T last_collision_time() const override { return run_.last_collision_time(); }
   const CollapseReport<T>* collapse() const override {
-    if constexpr (has_chain)
-      return &run_.collapse();
-    else
-      return nullptr;
+    if constexpr (has_chain) return &run_.collapse();
+    return nullptr;
   }
 
   std::optional<ParticleIndex> uncertain_at(const T& time) const override {
     if constexpr (requires { run_.chain().uncertain_at(time); })
       return run_.chain().uncertain_at(run_.chain().local_time(time));
-    else
-      return {};
+    return {};
   }
 
   std::optional<T> energy_deviation(const T& time) const override {
     if constexpr (requires { run_.chain().energy_deviation(time); })
       return run_.chain().energy_deviation(run_.chain().local_time(time));
-    else
-      return {};
+    return {};
   }
 
   std::optional<T> gap_to_wall(End end, const T& time) const override {
-    if constexpr (requires { run_.gap_to_wall(end, time); })
-      return run_.gap_to_wall(end, time);
-    else
-      return {};
+    if constexpr (requires { run_.gap_to_wall(end, time); }) return run_.gap_to_wall(end, time);
+    return {};
   }
   ParticleIndex collided_particles() const override { return run_.collided_particles(); }
   Configuration<T> configuration(const T& time) const override { return run_.configuration(time); }

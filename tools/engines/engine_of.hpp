@@ -20,8 +20,7 @@
 
 namespace cradle::tools {
 
-/// When a run of the scene stops by itself.
-// `by_function`: the restitution is a function, and not that of the scene.
+/// When a run of the scene stops by itself. `by_function`: the restitution is a function, and not that of the scene.
 template <Real T> Policy<T> policy_of(const Scene& scene, bool by_function) {
   Policy<T> policy;
   // Elastic particles collapse only against a wall that loses energy; particles that stick do not collapse.
@@ -48,14 +47,6 @@ template <Real T> BouncingLaw<T> bouncing_law(const Scene& scene) {
   const Inelastic<T> law(restitution, cutoff);
   if (scene.run.collapse != scene::CollapsePolicy::contact_time) return law;
   return ContactTime<T>(law, number<T>(scene.run.contact_time));
-}
-
-// Whether the choice of a law at every collision costs a run anything: not with larger numbers (0.1 % of the
-// instructions in long double and double-double).
-template <Real T> inline constexpr bool chooses_at_a_cost = std::same_as<T, double>;
-
-template <Real T> bool watched(const Scene& scene, const cradle::Particles<T>& particles) {
-  return to_be_watched(particles, scene.initial.type == InitialType::list);
 }
 
 /// Throws Error for masses that gaps under gravity or at shaken walls cannot hold: closing speeds alone lose the digits
@@ -93,12 +84,13 @@ std::unique_ptr<Engine<T>> engine_of(const Scene& scene, const std::shared_ptr<c
   const BouncingLaw<T> law = bouncing_law<T>(scene);
   if (scene.run.coordinates == Coordinates::absolute) return on(std::type_identity<PositionChain<T>>{}, law);
   require_masses_that_fall<T>(scene, *particles);
-  if (watched<T>(scene, *particles)) return on(std::type_identity<GapChain<T, WatchedMasses<T>>>{}, law);
+  if (to_be_watched(*particles, scene.initial.type == InitialType::list))
+    return on(std::type_identity<GapChain<T, WatchedMasses<T>>>{}, law);
   // Only the most used law has engines of its own, one for identical masses and one for others; the bits are the same.
   const auto individual = std::type_identity<GapChain<T, IndividualMasses<T>>>{};
   const auto* inelastic = law.template as<Inelastic<T>>();
   if (inelastic != nullptr && particles->identical_masses()) return on(std::type_identity<GapChain<T>>{}, *inelastic);
-  if constexpr (chooses_at_a_cost<T>)
+  if constexpr (std::same_as<T, double>)  // in larger numbers the choice at every collision costs at most 0.1 %
     if (inelastic != nullptr) return on(individual, *inelastic);
   return on(individual, law);
 }

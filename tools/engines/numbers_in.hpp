@@ -52,12 +52,7 @@ template <Real T> struct CollisionIn final : ObservedCollision {
     left = c.left, right = c.right;
     time = to_double(T(c.time.value())), interval = rounded(c.interval), closing_speed = rounded(c.closing_speed);
   }
-  double time_low() const override {
-    if constexpr (std::same_as<T, double>)
-      return difference(of.time, Pair<T>{time, 0});
-    else
-      return to_double(difference(of.time, Pair<T>{T(time), T(0)}));
-  }
+  double time_low() const override { return to_double(difference(of.time, Pair<T>{T(time), T(0)})); }
   Texts texts() const override {
     return {to_text(T(of.time.value())), to_text(of.interval), to_text(of.closing_speed)};
   }

@@ -13,24 +13,22 @@
 #include <cstdint>
 #include <optional>
 
+#include "cradle/core/base/real.hpp"
+
 namespace cradle::theory {
 
 /// Factors per collision of a collapse: closing speeds shrink by `plus`, gaps by `minus`, intervals by minus/plus.
-template <class T> struct CollapseRates {
-  T plus;
-  T minus;
-};
+template <class T> struct CollapseRates { T plus, minus; };
 
 /// Coupling a of n = `particles` equal particles in the checkerboard pattern; exact for 2, 3 and 4 up to one square
 /// root.
 template <class T> T checkerboard_coupling(const T& restitution, int particles) {
   using std::atan;
   using std::cos;
-  using std::sqrt;
   const T sum = T(1) + restitution;
   if (particles == 2) return T(0);
   if (particles == 3) return T(sum / T(2));
-  if (particles == 4) return T(sum / sqrt(T(2)));
+  if (particles == 4) return T(sum / square_root(T(2)));
   const T angle = T(4) * atan(T(1)) / T(particles);
   return T(sum * cos(angle));
 }
@@ -38,25 +36,17 @@ template <class T> T checkerboard_coupling(const T& restitution, int particles) 
 /// lam+ and lam- for a coupling; none where they are complex, that is, where the pattern disperses instead of
 /// collapsing, and none for restitution 0 with coupling 0 (two particles).
 template <class T> std::optional<CollapseRates<T>> collapse_rates(const T& restitution, const T& coupling) {
-  using std::sqrt;
   const T discriminant = coupling * coupling - T(4) * restitution;
   if (discriminant < T(0) || !(coupling > T(0))) return std::nullopt;
-  const T plus = (coupling + sqrt(discriminant)) / T(2);
+  const T plus = (coupling + square_root(discriminant)) / T(2);
   return CollapseRates<T>{plus, T(restitution / plus)};  // lam+ lam- = eps: the difference of the roots would cancel
 }
 
-/// Largest restitution at which three equal particles collapse, 7 - 4 sqrt 3 = 0.0718, without the cancellation.
-template <class T> T three_particle_collapse_limit() {
-  using std::sqrt;
-  return T(T(1) / (T(7) + T(4) * sqrt(T(3))));
-}
-
 /// Largest restitution at which n = `particles` equal particles collapse in the checkerboard pattern: tan^2[(pi/4)(1 -
-/// 2/n)].
+/// 2/n)], 7 - 4 sqrt 3 = 0.0718 of three.
 template <class T> T collapse_limit(int particles) {
-  using std::sqrt;
   const T cosine = checkerboard_coupling(T(0), particles);  // tan(pi/4 - b) = cos 2b / (1 + sin 2b) with 2b = pi/n
-  const T tangent = cosine / (T(1) + sqrt(T((T(1) - cosine) * (T(1) + cosine))));
+  const T tangent = cosine / (T(1) + square_root(T((T(1) - cosine) * (T(1) + cosine))));
   return T(tangent * tangent);
 }
 
@@ -64,9 +54,8 @@ template <class T> T collapse_limit(int particles) {
 /// number; about 2 pi/(1 - eps) near eps = 1. None for eps = 1. Inverse of `collapse_limit`.
 template <class T> std::optional<T> collapse_onset_particles(const T& restitution) {
   using std::atan;
-  using std::sqrt;
   if (!(restitution < T(1))) return std::nullopt;
-  const T root = T(1) + sqrt(restitution);
+  const T root = T(1) + square_root(restitution);
   // pi/4 - atan sqrt eps as one arc tangent: nothing cancels as eps -> 1
   const T angle = atan(T((T(1) - restitution) / (root * root)));
   return T(T(2) * atan(T(1)) / angle);

@@ -6,7 +6,7 @@
 // These discrete forms are exact (for about 2/(1-eps) collisions); equations (4) to (7) are continuous approximations.
 // Units: lengths, times and masses of the scene; densities are mass per length; rho0 = m/l.
 // kappa = (1-eps)/(1+eps) and s = 2 u0 t kappa/l; every form is written so that nothing cancels as eps -> 1, and eps =
-// 1 (rows that pass freely) is the limit, not a special case. T needs +, -, *, /, comparison, T(int), and log by ADL.
+// 1 (rows that pass freely) is the limit, not a special case. T is a Real with log by ADL.
 #pragma once
 
 #include "cradle/core/theory/inelastic_collapse.hpp"
@@ -36,15 +36,6 @@ template <class T> struct InelasticShock {
 };
 
 namespace detail {
-
-/// n as a T that is only sure to take an int.
-template <class T> T from_count(std::uint64_t n) {
-  T value(0);
-  for (int shift = 48; shift >= 0; shift -= 16) {
-    value = T(value * T(65536) + T(static_cast<int>((n >> shift) & 0xFFFFU)));
-  }
-  return value;
-}
 
 /// sum of (1+kappa)^k for k < n, by doubling, S_2k = S_k (2 + kappa S_k): all terms positive, error a few log2(n) ulp.
 template <class T> T geometric_sum(const T& kappa, std::uint64_t n) {
@@ -114,7 +105,8 @@ template <class T> FrontCollision<T> front_collision(const InelasticShock<T>& sh
   const T sum = detail::geometric_sum(shock.kappa(), n);
   const T slowed = shock.kappa() * sum;  // ((1+eps)/2)^-n = 1 + kappa sum
   const T half = shock.spacing / T(2);
-  return {n, T(half * sum / shock.speed), T(shock.origin() + shock.spacing * detail::from_count<T>(n) - half * sum),
+  return {n, T(half * sum / shock.speed),
+          T(shock.origin() + shock.spacing * T(static_cast<std::int64_t>(n)) - half * sum),
           T(shock.speed * (T(1) - slowed) / (T(1) + slowed))};
 }
 
@@ -247,7 +239,7 @@ template <class T> T mean_velocity_slope_early(const InelasticShock<T>& shock) {
 
 /// N m u0^2/2, of an inelastic or a wet shock.
 template <template <class> class Shock, class T> T initial_energy(const Shock<T>& shock) {
-  return T(detail::from_count<T>(shock.particles) * shock.mass * shock.speed * shock.speed / T(2));
+  return T(T(static_cast<std::int64_t>(shock.particles)) * shock.mass * shock.speed * shock.speed / T(2));
 }
 
 /// Energy, equation (7) with + before 2/3 (printed: -, which would gain energy, the bracket being negative).

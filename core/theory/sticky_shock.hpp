@@ -10,12 +10,12 @@
 //     A_l = rho_l t [w_l (m_0 + M) + rho_r w_r w t]/B,   A_r likewise.
 // All sums have positive terms; q is a product of a difference and a sum of square roots. Equal densities: M = m_0 +
 // rho (u_l - u_r) t, the weak solution of Fig. 1. The energy lost is the energy relative to V of all that has stuck.
-// Units: lengths, times and masses of the scene; densities are mass per length. T needs +, -, *, /, comparison, T(int),
-// and sqrt by ADL.
+// Units: lengths, times and masses of the scene; densities are mass per length. T is a Real.
 #pragma once
 
-#include <cmath>
 #include <stdexcept>
+
+#include "cradle/core/base/real.hpp"
 
 namespace cradle::theory {
 
@@ -42,23 +42,21 @@ template <class T> struct StickyCentre {
 
 /// Rate at which the mass grows, late or with m_0 = 0: sqrt(rho_l rho_r) (u_l - u_r).
 template <class T> T late_growth(const StickyShock<T>& shock) {
-  using std::sqrt;
-  return T(sqrt(T(shock.density_left)) * sqrt(T(shock.density_right)) * (shock.velocity_left - shock.velocity_right));
+  return T(square_root(shock.density_left) * square_root(shock.density_right) *
+           (shock.velocity_left - shock.velocity_right));
 }
 
 /// Velocity of the cluster, late or with m_0 = 0: (sqrt rho_l u_l + sqrt rho_r u_r)/(sqrt rho_l + sqrt rho_r).
 template <class T> T late_velocity(const StickyShock<T>& shock) {
-  using std::sqrt;
-  const T left = sqrt(T(shock.density_left));
-  const T right = sqrt(T(shock.density_right));
+  const T left = square_root(shock.density_left);
+  const T right = square_root(shock.density_right);
   return T((left * shock.velocity_left + right * shock.velocity_right) / (left + right));
 }
 
 /// Energy lost per time, late or with m_0 = 0: rho_l rho_r (u_l - u_r)^3/[2 (sqrt rho_l + sqrt rho_r)^2]; rho_0 u_0^3
 /// for equal rows (section IV).
 template <class T> T late_power(const StickyShock<T>& shock) {
-  using std::sqrt;
-  const T roots = sqrt(T(shock.density_left)) + sqrt(T(shock.density_right));
+  const T roots = square_root(shock.density_left) + square_root(shock.density_right);
   const T closing = shock.velocity_left - shock.velocity_right;
   const T growth = late_growth(shock);
   return T(growth * growth * closing / (T(2) * roots * roots));
@@ -66,7 +64,6 @@ template <class T> T late_power(const StickyShock<T>& shock) {
 
 /// The cluster at time t >= 0, while neither row is used up. Throws std::domain_error for data other than the above.
 template <class T> StickyCentre<T> sticky_centre(const StickyShock<T>& shock, const T& t) {
-  using std::sqrt;
   const T& m0 = shock.mass;
   const T& u_l = shock.velocity_left;
   const T& u_r = shock.velocity_right;
@@ -81,12 +78,12 @@ template <class T> StickyCentre<T> sticky_centre(const StickyShock<T>& shock, co
   const T w_l = u_l - u_c;
   const T w_r = u_c - u_r;
   const T w = u_l - u_r;
-  const T left = sqrt(shock.density_left);
-  const T right = sqrt(shock.density_right);
+  const T left = square_root(shock.density_left);
+  const T right = square_root(shock.density_right);
   const T q = (left * w_l - right * w_r) * (left * w_l + right * w_r);
   const T met = (shock.density_left * w_l + shock.density_right * w_r) * t;
   const T grown = left * right * w * t;
-  const T mass = sqrt(T(m0 * m0 + T(2) * m0 * met + grown * grown));
+  const T mass = square_root(T(m0 * m0 + T(2) * m0 * met + grown * grown));
   const T sum = m0 + met + mass;
   const T velocity = u_c + q * t * (m0 + mass) / (mass * sum);
   const T from_left = shock.density_left * t * (w_l * (m0 + mass) + shock.density_right * w_r * w * t) / sum;

@@ -13,7 +13,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <optional>
@@ -66,14 +65,11 @@ template <PiecewiseForce Force, class Stepper> class ClusterMotion {
 
   /// Advances to time t, not before the last requested one: the state after all meetings at times <= t.
   void advance(double t) {
-    while (true) {
-      if (event_ && !(t < known_))
+    while (event_ ? t >= known_ : t > known_)
+      if (event_)
         meet_event();
-      else if (t > known_)
-        step();
       else
-        break;
-    }
+        step();
     now_ = t;
   }
 
@@ -208,8 +204,7 @@ template <PiecewiseForce Force, class Stepper> class ClusterMotion {
       mass_[0] = {mass_[0].initial + mass_[1].initial, mass_[0].rate + mass_[1].rate};
       merged_ = true;
     } else if (rules_.meeting == Meeting::energy) {
-      using std::sqrt;
-      const double impulse = 2 * rules_.loss / (w + sqrt((w - critical) * (w + critical))) / rules_.speed;
+      const double impulse = speed_lost(rules_.loss, w, critical) / rules_.speed;
       v_left -= impulse / m_left;
       v_right += impulse / m_right;
     }
@@ -231,7 +226,7 @@ template <PiecewiseForce Force, class Stepper> class ClusterMotion {
     const double push_left = force_(below, edges[below]), push_right = force_(below + 1, edges[below]);
     const double speed = v * rules_.speed;
     const double rounding =
-        4 * std::numeric_limits<double>::epsilon() * std::max(rules_.length, std::max(edges[below], -edges[below]));
+        4 * std::numeric_limits<double>::epsilon() * std::max(rules_.length, magnitude(edges[below]));
     const double reach = std::min(push_left, -push_right) * rounding;
     if (push_left > 0 && push_right < 0 && !(mass_[i].at(time) * speed * speed / 2 > reach)) {
       v = 0;

@@ -13,7 +13,6 @@
 
 #include "cradle/core/theory/wet_shock.hpp"
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -29,34 +28,16 @@ template <class T> T wet_progress(const WetShock<T>& shock, const T& t) {
 /// g(s): collisions over those of rows that pass freely, in the limit of small losses. The series is cut after s^16: g
 /// is 7e-7 too large at s = 0.8, 4e-5 at 1, 2e-4 at 1.1. Finite losses change it by a few e/u0^2.
 template <class T> T collision_share(const T& s) {
-  // 1 - g = sum of 2 a_k s^k/(k+2)!, a_k dyadic: {numerator, binary logarithm of the denominator}
-  struct Dyadic {
-    std::int64_t numerator;
-    int bits;
-  };
-  constexpr std::array<Dyadic, 16> coefficients{{{1, 0},
-                                                 {1, 2},
-                                                 {3, 2},
-                                                 {41, 4},
-                                                 {173, 4},
-                                                 {1717, 5},
-                                                 {19439, 6},
-                                                 {3845, 1},
-                                                 {1717057, 7},
-                                                 {104527365, 10},
-                                                 {859920451, 10},
-                                                 {15184732971, 11},
-                                                 {71480968241, 10},
-                                                 {5707319311137, 13},
-                                                 {60046463838525, 13},
-                                                 {2648956684675571, 15}}};
+  // 1 - g = sum of 2 a_k s^k/(k+2)! with the a_k below: dyadic, so doubles are exact
   T sum(0);
   T scale(1);  // 2 s^k/(k+2)!
   int k = 0;
-  for (const auto& [numerator, bits] : coefficients) {
+  for (const double a : {1., 1. / 4, 3. / 4, 41. / 16, 173. / 16, 1717. / 32, 19439. / 64, 3845. / 2, 1717057. / 128,
+                         104527365. / 1024, 859920451. / 1024, 15184732971. / 2048, 71480968241. / 1024,
+                         5707319311137. / 8192, 60046463838525. / 8192, 2648956684675571. / 32768}) {
     ++k;
     scale = T(scale * s / T(k + 2));
-    sum = T(sum + scale * (T(numerator) / T(1 << bits)));
+    sum = T(sum + scale * exactly<T>(a));
   }
   return T(T(1) - sum);
 }

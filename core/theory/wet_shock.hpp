@@ -9,7 +9,7 @@
 //     n = (y0^2 - y^2)/2 - ln(y0/y),   t = (l/sqrt e) [(y0 - y) - 2 (atan y0 - atan y)],   x = x_0 + n l - u0 t ,
 // from y0 down to y = 1, where the tracer sticks. It is evaluated in d = y0 - y and s = y - 1, all terms positive, so
 // that nothing cancels at small times, small losses or near the threshold.
-// Units: lengths, times and masses of the scene. T needs +, -, *, /, comparison, T(int), and sqrt, log, atan by ADL.
+// Units: lengths, times and masses of the scene. T is a Real with log and atan by ADL.
 #pragma once
 
 #include "cradle/core/base/real.hpp"
@@ -25,14 +25,12 @@ namespace cradle::theory {
 /// Largest closing speed at which two particles stick, sqrt(2 E_loss/mu), mu the reduced mass; 2 sqrt(E_loss/m) for
 /// equal ones.
 template <class T> T critical_closing_speed(const T& loss, const T& mass_left, const T& mass_right) {
-  using std::sqrt;
-  return T(sqrt(T(T(2) * loss * ((mass_left + mass_right) / (mass_left * mass_right)))));
+  return square_root(T(T(2) * loss * ((mass_left + mass_right) / (mass_left * mass_right))));
 }
 
 /// The same as the paper's section II prints it, sqrt(2 E_loss)/mu, for comparison only: right if mu = 1.
 template <class T> T critical_closing_speed_printed(const T& loss, const T& mass_left, const T& mass_right) {
-  using std::sqrt;
-  return T(sqrt(T(T(2) * loss)) * ((mass_left + mass_right) / (mass_left * mass_right)));
+  return T(square_root(T(T(2) * loss)) * ((mass_left + mass_right) / (mass_left * mass_right)));
 }
 
 /// Parameters, loss >= 0, the rest positive; defaults are the paper's units.
@@ -51,10 +49,9 @@ template <class T> struct WetShock {
 };
 
 /// The speed that each of two single particles loses at the closing speed w > w_c, (w - w')/2 = 2e/(w + w'), w' =
-/// sqrt(w^2 - w_c^2).
+/// sqrt(w^2 - w_c^2). With E_loss for e it is the impulse, of any masses.
 template <class T> T speed_lost(const T& specific_loss, const T& w, const T& critical) {
-  using std::sqrt;
-  return T(T(2) * specific_loss / (w + sqrt(T((w - critical) * (w + critical)))));
+  return T(T(2) * specific_loss / (w + square_root(T((w - critical) * (w + critical)))));
 }
 
 // ---- discrete: the tracer, exact ----
@@ -82,7 +79,7 @@ template <class T> class WetFrontRecursion {
     now_.time = time_.value();
     now_.velocity = T(shock_.speed - lost_.value());
     now_.position =
-        T(shock_.origin() + (shock_.spacing * detail::from_count<T>(now_.collision) - shock_.speed * now_.time));
+        T(shock_.origin() + (shock_.spacing * T(static_cast<std::int64_t>(now_.collision)) - shock_.speed * now_.time));
     return true;
   }
 
@@ -131,12 +128,7 @@ std::optional<FrontCollision<T>> turnover_collision(const WetShock<T>& shock, st
 // ---- continuous: equation (8) in closed form ----
 
 /// The front with the number of collisions n as a real number.
-template <class T> struct WetFrontState {
-  T collisions;
-  T time;
-  T position;
-  T velocity;
-};
+template <class T> struct WetFrontState { T collisions, time, position, velocity; };
 
 namespace detail {
 
@@ -161,8 +153,7 @@ template <class T> T arctangent_deficit(const T& z) {
 template <class T> class WetFront {
  public:
   explicit WetFront(const WetShock<T>& shock) : shock_(shock) {
-    using std::sqrt;
-    root_ = T(sqrt(shock.specific_loss()));
+    root_ = square_root(shock.specific_loss());
     if (!moves() || !(root_ > T(0))) return;
     excess0_ = excess(shock.speed);
     depth0_ = from_excess(excess0_);
@@ -171,7 +162,6 @@ template <class T> class WetFront {
 
   /// The front at velocity u <= u0; none if it sticks before it is that slow, or never slows (loss 0).
   std::optional<WetFrontState<T>> at_velocity(const T& u) const {
-    using std::sqrt;
     if (!moves() || u > shock_.speed) return std::nullopt;
     if (!(root_ > T(0)) && u < shock_.speed) return std::nullopt;
     if (!(u < shock_.speed)) return WetFrontState<T>{T(0), T(0), shock_.origin(), shock_.speed};
@@ -179,7 +169,7 @@ template <class T> class WetFront {
     if (h < T(0)) return std::nullopt;
     // y0 - y = (h0 - h) + [sqrt(h0 (h0+2)) - sqrt(h (h+2))], the bracket as a quotient
     const T step = (shock_.speed - u) / (T(2) * root_);
-    const T roots = sqrt(T(excess0_ * (excess0_ + T(2)))) + sqrt(T(h * (h + T(2))));
+    const T roots = square_root(T(excess0_ * (excess0_ + T(2)))) + square_root(T(h * (h + T(2))));
     auto found = state(T(step + step * (excess0_ + h + T(2)) / roots), from_excess(h));
     found.velocity = u;
     return found;
@@ -229,10 +219,7 @@ template <class T> class WetFront {
 
   // h = r/(2 sqrt e) - 1 and s = y - 1 = h + sqrt(h (h+2))
   T excess(const T& u) const { return T((u + shock_.speed - T(2) * root_) / (T(2) * root_)); }
-  static T from_excess(const T& h) {
-    using std::sqrt;
-    return T(h + sqrt(T(h * (h + T(2)))));
-  }
+  static T from_excess(const T& h) { return T(h + square_root(T(h * (h + T(2))))); }
 
   // t sqrt(e)/l with z = tan(atan y0 - atan y): d = z (1 + y0 y), and y0 y - 1 = s0 + y0 s
   T scaled_time(const T& d, const T& s) const {

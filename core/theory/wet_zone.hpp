@@ -9,12 +9,11 @@
 // sqrt(v^2 - v_c^2), v_c = sqrt(2 E_loss/m), or sticks, and hands over the momentum it loses; the printed form lacks
 // the factor m. u_crit of (9) is that of two single particles, sqrt 2 v_c: no particle of the zone is slow enough to
 // stick to a cluster, and 2 E_loss/(m u^2) <= 1/2 in (15). That needs u_crit <= u0, E_loss <= m u0^2/4. The velocity of
-// the cluster itself is left out, as in the paper. T needs +, -, *, /, comparison, T(int), sqrt by ADL.
+// the cluster itself is left out, as in the paper. T is a Real.
 #pragma once
 
 #include "cradle/core/theory/wet_shock.hpp"
 
-#include <cmath>
 #include <stdexcept>
 
 namespace cradle::theory {
@@ -32,10 +31,7 @@ template <class T> T half_width_from_slowing(const WetShock<T>& shock, const T& 
   return T(stopping_length(shock) / (T(2) + k));
 }
 /// k = n~/n0 = sqrt 6, where (12) and (13) agree.
-template <class T> T density_excess() {
-  using std::sqrt;
-  return T(sqrt(T(6)));
-}
+template <class T> T density_excess() { return square_root(T(6)); }
 /// Collisions of a particle in the zone, j* = m u0^2/E_loss.
 template <class T> T collisions_to_rest(const WetShock<T>& shock) {
   return T(shock.mass * shock.speed * shock.speed / shock.loss);
@@ -51,11 +47,10 @@ template <class T> class WetZone {
  public:
   explicit WetZone(const WetShock<T>& shock)
       : shock_(shock), excess_(density_excess<T>()), slow_(shock.critical_speed()) {
-    using std::sqrt;
     if (!(shock.loss > T(0)) || slow_ > shock.speed)
       throw std::domain_error("the linear zone needs a loss above 0 and up to m u0^2/4");
     half_width_ = half_width_from_slowing(shock, excess_);
-    piston_critical_ = T(sqrt(T(T(2) * shock.specific_loss())));
+    piston_critical_ = square_root(T(T(2) * shock.specific_loss()));
   }
 
   const WetShock<T>& shock() const { return shock_; }
@@ -76,9 +71,8 @@ template <class T> class WetZone {
   /// Momentum that a particle of speed v >= 0 hands to a heavy cluster at rest: m (v - sqrt(v^2 - v_c^2)), all of it
   /// where it sticks.
   T piston_momentum(const T& v) const {
-    using std::sqrt;
     if (!(v > piston_critical_)) return T(shock_.mass * v);
-    return T(T(2) * shock_.loss / (v + sqrt(T((v - piston_critical_) * (v + piston_critical_)))));
+    return speed_lost(shock_.loss, v, piston_critical_);
   }
 
   /// F_+ on a cluster at x, equation (15): 0 at and beyond L, that of the untouched row at and beyond -L.
@@ -129,16 +123,10 @@ template <class T> class WetZone {
     if (!(u > T(0))) return T(0);
     return T(u * right_mover_density(x) * piston_momentum(u));
   }
-  T root_ratio(const T& u) const {
-    using std::sqrt;
-    return T(sqrt(T((u - piston_critical_) * (u + piston_critical_))) / u);
-  }
+  T root_ratio(const T& u) const { return T(square_root(T((u - piston_critical_) * (u + piston_critical_))) / u); }
 
   WetShock<T> shock_;
-  T excess_;
-  T slow_;
-  T half_width_{0};
-  T piston_critical_{0};
+  T excess_, slow_, half_width_{0}, piston_critical_{0};
 };
 
 }  // namespace cradle::theory

@@ -117,9 +117,9 @@ TEST(Architecture, FoldersUseOnlyThoseAboveThemInTheTower) {
   }
 }
 
-// Theory says `using std::sqrt;` and then calls sqrt unqualified, as does the wet law; the rest needs none. What works
-// on double by declaration (mantissas and exponents, bins, displacements, random speeds, bounds and sizes of proofs,
-// turns) is named here.
+// Theory says `using std::log;` and then calls log unqualified, as the wet law does with sqrt; the rest needs none.
+// What works on double by declaration (mantissas and exponents, bins, displacements, random speeds, bounds and sizes of
+// proofs, turns) is named here.
 TEST(Architecture, CoreUsesNoStandardMathematicsOnTheScalar) {
   const std::regex maths(
       R"(std::(abs|fabs|sqrt|cbrt|pow|exp|exp2|log|log2|log10|log1p|expm1|sin|cos|tan|atan|atan2|hypot|fma|floor|)"

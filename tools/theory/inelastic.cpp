@@ -39,8 +39,7 @@ void add_curves(Predictions& table, const theory::InelasticShock<double>& shock,
 void predict_inelastic(const Scene& scene, Predictions& table) {
   if (unequal_masses(scene) || scene.law.cutoff_exponent) return;
   const double eps = scene.law.restitution.value;
-  table.number("three_particle_collapse_limit", "7 - 4 sqrt 3", "continuous",
-               theory::three_particle_collapse_limit<double>());
+  table.number("three_particle_collapse_limit", "7 - 4 sqrt 3", "continuous", theory::collapse_limit<double>(3));
   if (eps < 1) table.number("collapse_onset_particles", "N_c", "continuous", theory::collapse_onset_particles(eps));
   if (eps < 1) table.number("collapse_onset_particles", "McNamara, Young", "cushion", theory::cushion_particles(eps));
   if (!equal_rows(scene)) return;

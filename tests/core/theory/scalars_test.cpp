@@ -99,7 +99,7 @@ TYPED_TEST(BuiltIn, AgreesWithWideToItsOwnPrecision) {
   expect_close(front_displacement(shock, T(700)), front_displacement(wide, Wide(700)), few, "(5)");
   expect_close(energy(shock, T(700)), energy(wide, Wide(700)), few, "(7)");
   expect_close(*collapse_onset_time(shock), *collapse_onset_time(wide), few, "onset");
-  expect_close(three_particle_collapse_limit<T>(), three_particle_collapse_limit<Wide>(), few, "7 - 4 sqrt 3");
+  expect_close(collapse_limit<T>(3), collapse_limit<Wide>(3), few, "7 - 4 sqrt 3");
 }
 
 }  // namespace cradle::test::theory_scalars_test

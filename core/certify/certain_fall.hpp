@@ -22,7 +22,6 @@ namespace cradle {
 // sqrt(x), where x > 0 is certain. With the root m of its middle |sqrt(y) - m| = |y - x|/(sqrt(y) + m), and sqrt(y) is
 // at least m (1 - q) if y is at least x (1 - q): this is half as wide as what a ball's own root allows for.
 template <Enclosing N> N narrow_root(const N& x) {
-  using std::sqrt;
   const N root = sqrt(N(x.middle(), 0));
   const auto share = x.radius() / N(x.middle(), 0).least_size();
   if (!(share < 1)) return sqrt(x);

@@ -6,13 +6,13 @@
 //
 // An entry that a replica does not have (a time after its collapse) is NaN: it is skipped, and counted as missing.
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <stdexcept>
 #include <tuple>
-#include <utility>
 #include <vector>
 
 namespace cradle {
@@ -73,13 +73,6 @@ struct Join {
   double share, weight;
 };
 
-inline void join_extremes(Moments& left, const Moments& right) {
-  const std::size_t n = left.entries();
-  for (std::size_t i = 0; i < n; ++i) left.least[i] = right.least[i] < left.least[i] ? right.least[i] : left.least[i];
-  for (std::size_t i = 0; i < n; ++i)
-    left.greatest[i] = right.greatest[i] > left.greatest[i] ? right.greatest[i] : left.greatest[i];
-}
-
 }  // namespace detail
 
 // The moments of both sets. Moments without replicas change nothing, not a bit. Throws std::invalid_argument if the
@@ -105,7 +98,8 @@ inline Moments combine(Moments left, const Moments& right) {
         left.mean[i] = right.mean[i], left.squares[i] = right.squares[i];
     }
   }
-  detail::join_extremes(left, right);
+  for (std::size_t i = 0; i < n; ++i) left.least[i] = std::min(left.least[i], right.least[i]);
+  for (std::size_t i = 0; i < n; ++i) left.greatest[i] = std::max(left.greatest[i], right.greatest[i]);
   left.replicas += right.replicas;
   return left;
 }

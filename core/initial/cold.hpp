@@ -58,7 +58,6 @@ template <Real T> HotParticles<T> kicked(ParticleIndex particle, const T& veloci
 template <Real T>
 HotParticles<T> heated(ParticleIndex first, ParticleIndex count, const T& energy, const MassPattern<T>& masses,
                        std::uint64_t seed, std::uint64_t replica) {
-  using std::sqrt;
   require(count >= 2, "random velocities of ", count, " particles without momentum: give it two or more, or a kick");
   require_finite(energy, "energy of the hot particles");
   require(energy > T(0), "energy of the hot particles is not positive (", energy, "): give a positive one");
@@ -71,7 +70,7 @@ HotParticles<T> heated(ParticleIndex first, ParticleIndex count, const T& energy
     const T v = hot.velocity(particle);
     twice.add(masses.of(particle) * v * v);
   }
-  hot.unit = sqrt(T((energy + energy) / twice.value()));
+  hot.unit = square_root(T((energy + energy) / twice.value()));
   return hot;
 }
 

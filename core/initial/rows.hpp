@@ -24,10 +24,7 @@ template <Real T> struct Row {
   T spacing;
 };
 
-template <Real T> struct CentralParticle {
-  T mass;
-  T velocity;
-};
+template <Real T> struct CentralParticle { T mass, velocity; };
 
 // Displacement of a particle in units of 2^-28 of the spacing: particles stay in order, since its magnitude is below
 // 2^27 or since it gives them other places in order (poisson.hpp).
@@ -143,13 +140,12 @@ template <Real T> class Rows final : public Particles<T> {
 
   T gap(ParticleIndex particle) const override {
     const bool from_left = particle < left_.count, to_left = particle + 1 < left_.count;
-    if (from_left == to_left && !is_centre(particle)) {
+    const bool in_a_row = from_left == to_left && !is_centre(particle);
+    if (in_a_row || (left_.spacing == right_.spacing && !centre_)) {
       const std::int64_t units = displacement_unit + displacement_(particle + 1) - displacement_(particle);
       return T(units) * (from_left ? left_unit_ : right_unit_);
     }
     // The distances of both particles from the origin are positive: their sum does not cancel.
-    if (left_.spacing == right_.spacing && !centre_)
-      return T(displacement_unit + displacement_(particle + 1) - displacement_(particle)) * left_unit_;
     return position(particle + 1) - position(particle);
   }
 

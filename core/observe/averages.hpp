@@ -49,12 +49,8 @@ class TimeAverages {
   void find(const Configuration<T>& c, const Particles<T>& particles, const T& elapsed,
             const std::function<bool()>& stopped = {}) {
     seen_.clear();
-    for_each_particle(
-        c, particles, elapsed, range_,
-        [&](double x, double v, double m) {
-          seen_.push_back({x, v, m});
-        },
-        stopped);
+    const auto see = [&](double x, double v, double m) { seen_.push_back(Seen{x, v, m}); };
+    for_each_particle(c, particles, elapsed, range_, see, stopped);
   }
   void add_found() {
     Batch& batch = batches_.at(taken_ * batches / samples_);

@@ -28,7 +28,6 @@ template <Real T> struct Cloud {
 };
 
 template <Real T> Cloud<T> cloud(const Configuration<T>& c) {
-  using std::sqrt;
   Cloud<T> found;
   std::size_t first = c.collided_to, second = c.collided_to;  // heaviest, next
   CompensatedSum<T> mass;
@@ -53,7 +52,7 @@ template <Real T> Cloud<T> cloud(const Configuration<T>& c) {
     mean += from_mean * (c.m[j] / rest);
     scatter += c.m[j] * from_mean * (c.x[j] - mean);
   }
-  if (is_positive(rest)) found.width = sqrt(T(scatter / rest));
+  if (is_positive(rest)) found.width = square_root(T(scatter / rest));
   return found;
 }
 

@@ -74,10 +74,7 @@ template <Real T> struct GuardCheck {
 };
 
 // A number from the root of x >= 0 to 1.06 times the root.
-template <Real T> T root_above(const T& x) {
-  using std::sqrt;
-  return is_positive(x) ? T(T(sqrt(x)) * T(33) / T(32)) : T(0);
-}
+template <Real T> T root_above(const T& x) { return is_positive(x) ? T(square_root(x) * T(33) / T(32)) : T(0); }
 
 namespace detail {
 
@@ -137,36 +134,32 @@ GuardCheck<T> guarded(const Configuration<T>& c, const Particles<T>& particles, 
 
   const bool fall = particles.fall();
   const T acceleration = particles.acceleration(), twice_weight = T(-2) * acceleration;  // of the mass 1
-  CompensatedSum<T> twice, momentum;
-  T fastest(0), most_energy(0);
-  for (std::size_t j = 0; j < c.x.size(); ++j) {
-    const T& v = c.v[j];
-    const T p = c.m[j] * v, own = p * v;
-    twice.add(own);
-    if (fall) twice.add(twice_weight * c.m[j] * c.x[j]);
-    momentum.add(p);
-    if (fastest < magnitude(v)) fastest = magnitude(v);
-    if (most_energy < own) most_energy = own;
-  }
-  // The sums over the other particles, and over these at the start.
-  CompensatedSum<T> twice_before, momentum_before;
+  struct Sums {
+    CompensatedSum<T> twice, momentum;  // twice the energy
+    T fastest{0}, most_energy{0};
+  };
+  const auto add = [&](Sums& to, const T& m, const T& v, const T& x) {
+    const T p = m * v, own = p * v;
+    to.twice.add(own);
+    if (fall) to.twice.add(twice_weight * m * x);
+    to.momentum.add(p);
+    if (to.fastest < magnitude(v)) to.fastest = magnitude(v);
+    if (to.most_energy < own) to.most_energy = own;
+  };
+  // Over the particles of the configuration, now and at the start.
+  Sums now, before;
+  for (std::size_t j = 0; j < c.x.size(); ++j) add(now, c.m[j], c.v[j], c.x[j]);
+  for (ParticleIndex b = c.from; b <= c.to; ++b)
+    add(before, particles.mass(b), particles.velocity(b), fall ? particles.position(b) : T(0));
   const bool all = c.from == 0 && c.to + 1 == particles.count();
-  T fastest_before(0);
-  for (ParticleIndex b = c.from; b <= c.to; ++b) {
-    const T v = particles.velocity(b), p = particles.mass(b) * v;
-    twice_before.add(p * v);
-    if (fall) twice_before.add(twice_weight * particles.mass(b) * particles.position(b));
-    momentum_before.add(p);
-    if (fastest_before < magnitude(v)) fastest_before = magnitude(v);
-  }
   const T start_energy = particles.mechanical_energy(), mass = particles.total_mass();
-  const T rest = all ? T(0) : T(start_energy - twice_before.value() / T(2));
+  const T rest = all ? T(0) : T(start_energy - before.twice.value() / T(2));
   const T epsilon = std::numeric_limits<T>::epsilon();
   const T delta = detail::guard_unit(particles, collisions);
   const bool driven = particles.driven();
   const T twice_energy = T(2) * particles.most_kinetic_energy(elapsed);
   const bool bounded_by_start = particles.identical_masses() && !driven && !fall;
-  const T top_speed = bounded_by_start ? fastest_before : root_above(T(twice_energy / particles.least_mass()));
+  const T top_speed = bounded_by_start ? before.fastest : root_above(T(twice_energy / particles.least_mass()));
   const T all_as_one = root_above(T(twice_energy * mass));  // no momentum is larger
 
   const T of_sums = c.speeds_are_sums ? delta : T(delta * epsilon);
@@ -177,12 +170,12 @@ GuardCheck<T> guarded(const Configuration<T>& c, const Particles<T>& particles, 
   const T of_energy = delta * twice_energy + of_sums * top_speed * all_as_one + of_fall +
                       detail::work_at_ends(c, particles, twice_energy, elapsed);
   // No particle has more than the total energy.
-  if (!(most_energy <= twice_energy + T(2) * of_energy)) report(Guard::energy, most_energy, twice_energy);
-  const T off_energy = magnitude(T(rest + twice.value() / T(2) - energy));
+  if (!(now.most_energy <= twice_energy + T(2) * of_energy)) report(Guard::energy, now.most_energy, twice_energy);
+  const T off_energy = magnitude(T(rest + now.twice.value() / T(2) - energy));
   if (!(off_energy <= of_energy)) report(Guard::energy, off_energy, of_energy);
   const T from_gravity = fall ? T(acceleration * elapsed * particles.mass_between(c.from, c.to + 1)) : T(0);
   const T off_momentum =
-      magnitude(T(momentum.value() - ((all ? particles.momentum() : momentum_before.value()) + from_gravity)));
+      magnitude(T(now.momentum.value() - ((all ? particles.momentum() : before.momentum.value()) + from_gravity)));
   const T of_momentum = delta * all_as_one + of_sums * top_speed * mass;
   if (!particles.walled() && !(off_momentum <= of_momentum)) report(Guard::momentum, off_momentum, of_momentum);
 
@@ -197,7 +190,7 @@ GuardCheck<T> guarded(const Configuration<T>& c, const Particles<T>& particles, 
   }
   if (c.closure_speed) {
     check.closure_speed = *c.closure_speed;
-    const T of_speed = of_sums * top_speed + T(4) * epsilon * (fastest + fastest_before);
+    const T of_speed = of_sums * top_speed + T(4) * epsilon * (now.fastest + before.fastest);
     if (!(magnitude(*c.closure_speed) <= of_speed)) report(Guard::closure, *c.closure_speed, of_speed);
   }
   return check;

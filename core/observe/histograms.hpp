@@ -165,14 +165,10 @@ template <Real T, class Visit> void for_each_cluster(const Configuration<T>& c, 
   std::size_t begin = 0;
   while (on_ring && begin < count && close((begin + count - 1) % count)) ++begin;
   if (begin == count) return count > 0 ? visit(count) : void();
-  for (std::size_t k = 0, particles = 1; k < count; ++k) {
-    const bool last = k + 1 == count;
-    if (!last && close((begin + k) % count)) {
-      ++particles;
-    } else {
-      visit(particles);
-      particles = 1;
-    }
+  for (std::size_t k = 0, particles = 1; k < count; ++k, ++particles) {
+    if (k + 1 < count && close((begin + k) % count)) continue;
+    visit(particles);
+    particles = 0;
   }
 }
 

@@ -45,14 +45,12 @@ class StructureFactor {
                                  const std::function<bool()>& stopped = {}) const {
     std::vector<double> turns, masses, all;
     double squares = 0;
-    for_each_particle(
-        c, particles, elapsed, whole_line,
-        [&](double x, double, double m) {
-          turns.push_back(x / length_);
-          masses.push_back(m);
-          squares += m * m;
-        },
-        stopped);
+    const auto see = [&](double x, double, double m) {
+      turns.push_back(x / length_);
+      masses.push_back(m);
+      squares += m * m;
+    };
+    for_each_particle(c, particles, elapsed, whole_line, see, stopped);
     for (const std::uint64_t n : waves_) {
       if (stopped && stopped()) throw WalkStopped();
       double real = 0, imaginary = 0;

@@ -11,7 +11,7 @@
 // What is proved is existence inside and the equality at the ends. That there is nothing outside is only seen.
 
 #include <cstddef>
-#include <cstdint>
+#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>

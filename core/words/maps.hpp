@@ -54,14 +54,8 @@ template <Real T> void collide(std::vector<T>& w, std::size_t at, const T& r, co
 // between. Returns its time.
 template <Real T> T fly_back(std::vector<T>& g, std::size_t before, const std::vector<T>& w) {
   const T time = -g[before] / w[before];
-  for (std::size_t i = 0; i < g.size(); ++i) {
-    if (i == before)
-      g[i] = T(0);
-    else if (planted(4))
-      g[i] -= w[i] * time;
-    else
-      g[i] += w[i] * time;
-  }
+  for (std::size_t i = 0; i < g.size(); ++i) g[i] += planted(4) ? T(-(w[i] * time)) : T(w[i] * time);
+  g[before] = T(0);
   return time;
 }
 

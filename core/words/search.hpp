@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <utility>
 #include <vector>
 
@@ -65,16 +64,12 @@ template <Real T> System<T> in_order_of_time(System<T> system, const T& r, const
     rate = state.growth * state.lambda;
     return course(of, r, state).flight;
   };
-  const auto negative = [&](const std::vector<T>& times) {
-    std::size_t k = 0;
-    T scale(0);
-    for (const T& time : times) scale += magnitude(time);
-    while (k < times.size() && !(times[k] < -tolerance * scale)) ++k;
-    return k;
-  };
   std::vector<T> times = flights(system);
   for (std::size_t swaps = 0; swaps < length * length && times.size() == length; ++swaps) {
-    std::size_t late = negative(times);
+    T scale(0);
+    for (const T& time : times) scale += magnitude(time);
+    std::size_t late = 0;
+    while (late < length && !(times[late] < -tolerance * scale)) ++late;
     if (late == length) break;
     Word word = system.word;
     if (late == 0) word = rotated(std::move(word), length - 1), late = 1;

@@ -155,10 +155,7 @@ inline Word rotated(Word word, std::size_t by) {
 
 // Whether the second half of a word is the mirror image of the first.
 inline bool has_mirrored_half(const Word& word, std::size_t gaps) {
-  const std::size_t half = word.size() / 2;
-  bool all = word.size() % 2 == 0;
-  for (std::size_t k = 0; k < half && all; ++k) all = word[k] + word[k + half] + 1 == gaps;
-  return all;
+  return word.size() % 2 == 0 && rotated(mirrored(word, gaps), word.size() / 2) == word;
 }
 
 // Calls f with one word of every motion of up to `longest` letters that particles with so many gaps might repeat; with

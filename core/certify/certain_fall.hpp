@@ -49,8 +49,7 @@ template <Enclosing N> struct CertainApproach {
   }
 
   // Whether the gap to a ceiling stays open. It is known to be positive the time `before` after that of these numbers,
-  // and is to be so until `until`. Returns nothing if it certainly is, else what is open: of the first two the second
-  // should be larger.
+  // and is to be so until `until`. Returns nothing if it certainly is, else what is open: `second` should be larger.
   struct Open {
     N first, second;
     bool refuted;

@@ -30,8 +30,7 @@ template <Enclosing N> struct DoubtAt {
   Doubt<N> doubt;
 };
 
-// Collisions proved, those of them that were below a threshold, those that merged, and those of which times and sides
-// were decided in plain doubles.
+// Collisions proved; those of them below a threshold, that merged, and that plain doubles decided (times and sides).
 struct Proved {
   std::uint64_t collisions = 0, below_cutoff = 0, merges = 0, in_doubles = 0;
 };

@@ -76,8 +76,7 @@ template <Enclosing N> class CertainWalls {
     return std::nullopt;
   }
   bool reflects(ParticleIndex wall) const { return !walls_[number_of(end_of(wall))]->thermal(); }
-  // Makes that collision, which is known to be later than the last one of the particle. `elastic`: whatever the wall's
-  // restitution is.
+  // Makes that collision, known to be later than the particle's last one. `elastic`: whatever the wall's restitution.
   std::optional<Doubt<N>> strike(Motion<N>& motion, const Approaching& at, bool elastic) {
     const End end = end_of(at.wall);
     const CertainWall<N>& wall = *walls_[number_of(end)];

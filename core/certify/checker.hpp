@@ -4,9 +4,8 @@
 // (precision/ball.hpp), and it checks the conditions under which these lines are the motion of the exact system. It
 // shares no arithmetic with the engine that proposes the collisions.
 //
-// World lines. Particle k flies along x = a_k + v_k t until its next collision; t is the time since the start. Let
-// w = v_l - v_r for two particles l and r. They meet at the time T = (a_r - a_l)/w, and whatever impulse J they
-// exchange,
+// World lines. Particle k flies along x = a_k + v_k t until its next collision; t is the time since the start. Two
+// particles l and r with w = v_l - v_r meet at the time T = (a_r - a_l)/w, and whatever impulse J they exchange,
 //
 //   (a, v)_l' = (a, v)_l - c_l ((a, v)_l - (a, v)_r),   (a, v)_r' = (a, v)_r + c_r ((a, v)_l - (a, v)_r),
 //
@@ -51,8 +50,7 @@ template <Enclosing N> class Checker {
     return doubt;
   }
 
-  // The next collisions of the run, as one after the other. Those before the one that is in doubt are proved; after it
-  // nothing more can be checked.
+  // The next ones in turn. Those before the one in doubt are proved; after it nothing more can be checked.
   using Pair = std::pair<ParticleIndex, ParticleIndex>;
   std::optional<DoubtAt<N>> collisions(std::span<const Pair> pairs) {
     if constexpr (SideBySide<N>) {

@@ -1,7 +1,6 @@
 #pragma once
-// Numbers with enclosures (precision/ball.hpp has them), as the checker needs them: the operations of a Real, whose
-// results enclose all that the operands may be, comparisons that are certain, and combinations that do not widen what
-// they combine.
+// Numbers with enclosures (precision/ball.hpp) as the checker needs them: the operations of a Real, whose results
+// enclose all that operands may be, comparisons that are certain, combinations that do not widen what they combine.
 
 #include <concepts>
 

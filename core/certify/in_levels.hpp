@@ -1,8 +1,7 @@
 #pragma once
 // Many collisions of identical particles that bounce, proved level by level (side_by_side.hpp): those of one level
-// share no particle. What plain doubles leave open is made alone, as it would be in the order of the run. Of the
-// collisions in doubt the first one in that order is reported: those before it depend on none that is in doubt, so they
-// are proved.
+// share no particle. What plain doubles leave open is made alone, as it would be in the order of the run. Of those in
+// doubt the first in that order is reported: those before it depend on none that is in doubt, so they are proved.
 
 #include <algorithm>
 #include <cstdint>

@@ -2,8 +2,7 @@
 // The checker's arithmetic for many collisions at once (checker.hpp). Collisions that share no particle may be checked
 // in any order, so those of one list are divided into levels: a collision is one level above the last one of either of
 // its particles. Those of a level share no particle, and are computed side by side, by loops that compilers turn into
-// vectors: the operations of each are those of the checker for one collision, so its enclosures are the same to the
-// bit.
+// vectors, with the operations of the checker for one collision: enclosures are the same to the bit.
 
 #include <array>
 #include <concepts>

@@ -75,8 +75,7 @@ struct Join {
 
 }  // namespace detail
 
-// The moments of both sets. Moments without replicas change nothing, not a bit. Throws std::invalid_argument if the
-// lengths of the vectors differ.
+// The moments of both sets. Those without replicas change no bit. Throws std::invalid_argument if lengths differ.
 inline Moments combine(Moments left, const Moments& right) {
   if (right.replicas == 0) return left;
   if (left.replicas == 0) return right;

@@ -52,9 +52,8 @@ template <Real T> HotParticles<T> kicked(ParticleIndex particle, const T& veloci
   return {particle, {1}, T(0), velocity};
 }
 
-// Several particles with independent Gaussian velocities, of one variance for all masses, minus the velocity of their
-// centre of mass; scaled to the given energy. Throws std::invalid_argument for fewer than two particles or an energy
-// that is not positive and finite.
+// Several particles with independent Gaussian velocities, of one variance for all masses, minus that of their centre of
+// mass; scaled to the energy. Throws std::invalid_argument for fewer than two, or an energy not positive and finite.
 template <Real T>
 HotParticles<T> heated(ParticleIndex first, ParticleIndex count, const T& energy, const MassPattern<T>& masses,
                        std::uint64_t seed, std::uint64_t replica) {

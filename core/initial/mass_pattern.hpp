@@ -32,8 +32,7 @@ template <Real T> class MassPattern {
     if (identical) identical_ = *identical;
   }
 
-  // Random masses of `count` particles. Throws std::invalid_argument unless 0 < least < greatest, both finite, and for
-  // 2^31 particles or more.
+  // Random masses. Throws std::invalid_argument unless 0 < least < greatest < infinity and 0 < count < 2^31.
   MassPattern(const T& least, const T& greatest, ParticleIndex count, std::uint64_t seed, std::uint64_t replica)
       : masses_{least, greatest}, identical_(false), unit_((greatest - least) / T(drawn_unit)) {
     require_finite(greatest, "greatest of the random masses");

@@ -5,8 +5,7 @@
 //
 // Zero momentum: for identical masses the mean is subtracted from the integers, and its remainder, less than one per
 // particle, from the first particles. For masses that differ the velocity of the centre of mass, sum m_b n_b / sum m_b
-// of the integers n_b, is a fraction: it is subtracted from velocities in the working precision; closing speeds do not
-// contain it.
+// of the integers n_b, is a fraction: it is subtracted in the working precision; closing speeds do not contain it.
 
 #include <cmath>
 #include <string>

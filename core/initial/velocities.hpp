@@ -39,8 +39,7 @@ inline std::vector<std::int64_t> drawn(const VelocityDraw& draw, ParticleIndex f
 
 namespace detail {
 
-// Random bits have an index that is the particle and the number of the attempt, from 1 on: displacements use the
-// indices 0, 1, ...
+// The index of random bits is the particle and the number of the attempt, from 1 on: displacements have 0, 1, ...
 inline constexpr std::uint64_t attempt = std::uint64_t{1} << 56;
 
 namespace lanes {

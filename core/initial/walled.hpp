@@ -1,6 +1,5 @@
 #pragma once
-// Particles on a line with walls at one end or both (wall.hpp), with an acceleration (gravity), or both. Shaken walls
-// are where they are at the start.
+// Particles on a line with walls at one end or both (wall.hpp), gravity, or both. Shaken walls are as at the start.
 
 #include <limits>
 #include <memory>

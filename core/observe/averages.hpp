@@ -43,8 +43,7 @@ class TimeAverages {
       throw std::invalid_argument("averages over time without extent: give a range, 1 bin and 32 samples at least");
   }
 
-  // Finds the particles of a sample, which add_found() then adds. If the loop is stopped, it throws WalkStopped (see
-  // for_each_particle).
+  // Finds the particles of a sample, which add_found() then adds. `stopped`: see for_each_particle.
   template <Real T>
   void find(const Configuration<T>& c, const Particles<T>& particles, const T& elapsed,
             const std::function<bool()>& stopped = {}) {

@@ -2,8 +2,7 @@
 // Means from batches, with errors. Batches of samples follow each other in time, batches of particles beside each other
 // on the line. The error is that of the jackknife over batches, (B - 1)/B sum_b (f_b - mean)^2, f_b being the mean
 // without batch b; for batches of equal weight it is the error from batch means (Flyvbjerg and Petersen, J. Chem. Phys.
-// 91, 461, 1989). It holds if batches are longer than what is correlated: then four batches joined to one give the
-// same.
+// 91, 461, 1989). It holds if batches are longer than what is correlated: then four joined to one give the same.
 
 #include <array>
 #include <cmath>

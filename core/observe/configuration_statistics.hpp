@@ -51,8 +51,7 @@ template <Real T> T potential_energy(const Configuration<T>& c, const Particles<
   return particles.potential_energy() - a * ((moment.value() - moment_before.value()) + of_others);
 }
 
-// Momentum that the particles of a configuration have gained since the start; zero except for rounding, walls and
-// gravity.
+// Momentum that a configuration's particles have gained since the start; zero but for rounding, walls and gravity.
 template <Real T> T momentum_gained(const Configuration<T>& c, const Particles<T>& particles) {
   CompensatedSum<T> gained;
   for (std::size_t j = 0; j < c.x.size(); ++j) gained.add(c.m[j] * c.v[j]);

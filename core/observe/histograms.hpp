@@ -74,8 +74,7 @@ class OctaveHistogram {
 
 template <Real T> class CollisionHistograms {
  public:
-  // Of collisions of so many particles at times from `from` to `until`; `flights`: also what needs the past of every
-  // particle.
+  // Of collisions of so many particles from `from` to `until`; `flights`: also what needs the past of every particle.
   CollisionHistograms(const T& from, const T& until, const OctaveBins& bins, ParticleIndex particles, bool flights)
       : from_(from), until_(until), particles_(particles), flights_(flights), free_flights(bins), pair_flights(bins),
         closing_speeds(bins), dissipative_speeds(bins) {}
@@ -155,8 +154,7 @@ template <Real T> class CollisionHistograms {
   OctaveHistogram free_flights, pair_flights, closing_speeds, dissipative_speeds;
 };
 
-// Calls visit(particles) for every cluster: a largest set of neighbours with gaps below `gap`. Particles that have
-// merged count as one.
+// Calls visit(particles) for every cluster: a largest set of neighbours with gaps < `gap`. Merged ones count as one.
 template <Real T, class Visit> void for_each_cluster(const Configuration<T>& c, const T& gap, Visit visit) {
   const std::size_t count = c.x.size();
   const auto close = [&](std::size_t j) { return j < c.gap.size() && c.gap[j] < gap; };  // j and the one behind it

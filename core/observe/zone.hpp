@@ -42,8 +42,7 @@ class ZoneAverage {
       throw std::invalid_argument("zone without extent: give it a positive reach, 4 bins and 16 samples at least");
   }
 
-  // Finds the particles of a sample, which add_found() then adds. If the loop is stopped, it throws WalkStopped (see
-  // for_each_particle).
+  // Finds the particles of a sample, which add_found() then adds. `stopped`: see for_each_particle.
   template <Real T>
   void find(const Configuration<T>& c, const Particles<T>& particles, const T& elapsed,
             const std::function<bool()>& stopped = {}) {

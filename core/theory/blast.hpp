@@ -10,9 +10,8 @@
 //
 //     xi = (6V-2)^(2/5) (2V)^(-2/3) (3-4V)^(-11/15),    G = 2 (2-2V)^2 (6V-2)^(1/5) (3-4V)^(-11/5),
 //
-// and 1/A = 2 delta^2 int_0^1 xi^2 G (V^2 + V^2 (1-V)/(3V-1))/2 dxi: A = 1071/152 (arXiv:2010.15868, found there; the
-// quadrature is in tests/core/theory/classics_test.cpp). Derived here; the source's profiles are these. Units of the
-// scene.
+// and 1/A = 2 delta^2 int_0^1 xi^2 G (V^2 + V^2 (1-V)/(3V-1))/2 dxi: A = 1071/152 (found in arXiv:2010.15868; the
+// quadrature is in tests/core/theory/classics_test.cpp). Derived here, with the source's profiles. Units of the scene.
 #pragma once
 
 #include <algorithm>

@@ -4,8 +4,7 @@
 // m/(m + mu). If alpha = pi/(2k+1), that is c = cos alpha, m/mu = c/(1-c), the point leaves the wedge in one direction
 // whatever the place it came in: after 2k collisions the first two particles are at rest and the third has all of the
 // momentum. So the front moves from heavy particle to heavy particle at the speed u, for ever, and particle n = 0, 2,
-// 4, ... is first hit when the light one before it, of the speed 2 c u after its first collision, has come from n-1 to
-// n:
+// 4, ... is first hit when the light one before it, at 2 c u after its first collision, has come from n-1 to n:
 //
 //     t_n = (n - 1 + 1/(2c)) a/u = (n - c_k) a/u,    c_k = 0, 0.381966, 0.445042, 0.467911 for k = 1, 2, 3, 4.
 //

@@ -20,8 +20,7 @@ namespace cradle::theory {
 /// Factors per collision of a collapse: closing speeds shrink by `plus`, gaps by `minus`, intervals by minus/plus.
 template <class T> struct CollapseRates { T plus, minus; };
 
-/// Coupling a of n = `particles` equal particles in the checkerboard pattern; exact for 2, 3 and 4 up to one square
-/// root.
+/// Coupling a of n = `particles` equal particles in the checkerboard pattern; of 2 to 4 exact up to one square root.
 template <class T> T checkerboard_coupling(const T& restitution, int particles) {
   using std::atan;
   using std::cos;
@@ -61,9 +60,8 @@ template <class T> std::optional<T> collapse_onset_particles(const T& restitutio
   return T(T(2) * atan(T(1)) / angle);
 }
 
-/// McNamara and Young's estimate of how many particles it takes to stop one that runs into them, N =
-/// ln(4/(1-eps))/(1-eps): of a gas between walls that collapses, N_c = 36.9, 87.6, 599 at eps = 0.9, 0.95, 0.99. eps <
-/// 1.
+/// McNamara and Young's estimate of how many particles stop one that runs into them, N = ln(4/(1-eps))/(1-eps): of a
+/// gas between walls that collapses, N_c = 36.9, 87.6, 599 at eps = 0.9, 0.95, 0.99. eps < 1.
 inline double cushion_particles(double restitution) {
   using std::log;
   return log(4 / (1 - restitution)) / (1 - restitution);
@@ -78,12 +76,10 @@ template <class T> struct CollapseCollision {
 };
 
 /// The collisions of a collapse one after the other, from plain arithmetic: closing speeds by the recursion, gaps by
-/// the invariant. Times lose their last digits as the collisions crowd; `closing_speed`, `other_gap` and `interval` do
-/// not.
+/// the invariant. Times lose their last digits as the collisions crowd; the rest and `interval` do not.
 template <class T> class CollapseSequence {
  public:
-  /// At time `t0` (collision 0) gaps closing at `p0` touch, the others are `g0` wide and closed at `other_speed` before
-  /// it.
+  /// At time `t0` (collision 0) gaps closing at `p0` touch; others are `g0` wide and closed at `other_speed` before.
   CollapseSequence(const T& restitution, const T& coupling, const T& t0, const T& p0, const T& g0, const T& other_speed)
       : eps_(restitution), coupling_(coupling), now_{0, t0, p0, g0}, next_speed_(other_speed + coupling * p0) {}
 

@@ -29,8 +29,7 @@ template <class T> struct InelasticShock {
 
   /// (1-eps)/(1+eps): what each collision adds to the ratio of two successive intervals.
   T kappa() const { return T((T(1) - restitution) / (T(1) + restitution)); }
-  /// x_0 = -l/2, where the tracer starts. The paper's text calls x_0 the centre of the wave and sets it to 0 from (5)
-  /// on.
+  /// x_0 = -l/2, where the tracer starts. The paper calls x_0 the centre of the wave and sets it to 0 from (5) on.
   T origin() const { return T(-spacing / T(2)); }
   T row_density() const { return T(mass / spacing); }
 };
@@ -145,8 +144,7 @@ template <class T> T front_position_discrete(const InelasticShock<T>& shock, con
   return T(last.position + last.velocity * (t - last.time));
 }
 
-/// The collision at which the tracer is farthest, the first with u_n <= 0; its reach is position - origin(). None at
-/// eps = 1.
+/// The collision at which the tracer is farthest, by position - origin(): the first with u_n <= 0. None at eps = 1.
 template <class T> std::optional<FrontCollision<T>> turnover_collision(const InelasticShock<T>& shock) {
   const T kappa = shock.kappa();
   if (!(kappa > T(0))) return std::nullopt;
@@ -188,8 +186,7 @@ template <class T> std::optional<T> maximal_front(const InelasticShock<T>& shock
   return T(shock.spacing * count / kappa);
 }
 
-// ---- linear profiles in |x| <= x_f, equations (6) and (7); x_f is the displacement, t > 0 and before the turnover
-// ----
+// ---- linear profiles in |x| <= x_f, (6) and (7); x_f is the displacement, t > 0 and before the turnover ----
 
 /// Density in the interaction zone (mass per length), rho0 (1 + u0 t/x_f).
 template <class T> T interaction_density(const InelasticShock<T>& shock, const T& t) {
@@ -243,8 +240,7 @@ template <template <class> class Shock, class T> T initial_energy(const Shock<T>
 }
 
 /// Energy, equation (7) with + before 2/3 (printed: -, which would gain energy, the bracket being negative).
-/// It is the energy of the linear profiles; the loss is 1.7, 5.4, 15 % too small at t*/4, t*/2, t* (eps = 0.999,
-/// N-particle).
+/// It is that of the linear profiles; the loss is 1.7, 5.4, 15 % too small at t*/4, t*/2, t* (eps = 0.999, N-particle).
 template <class T> T energy(const InelasticShock<T>& shock, const T& t) {
   const T front = front_displacement(shock, t);
   const T free = shock.speed * t;

@@ -19,8 +19,7 @@
 
 namespace cradle::theory {
 
-/// Riemann data: densities > 0, u_l >= u_c >= u_r, u_l > u_r, m_0 >= 0. Without a particle, m_0 = 0, u_c has no
-/// meaning.
+/// Riemann data: densities > 0, u_l >= u_c >= u_r, u_l > u_r, m_0 >= 0. Without a particle, m_0 = 0, u_c means nothing.
 template <class T> struct StickyShock {
   T density_left;     ///< rho_l
   T velocity_left;    ///< u_l

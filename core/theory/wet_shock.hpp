@@ -22,8 +22,7 @@
 
 namespace cradle::theory {
 
-/// Largest closing speed at which two particles stick, sqrt(2 E_loss/mu), mu the reduced mass; 2 sqrt(E_loss/m) for
-/// equal ones.
+/// Largest closing speed at which two particles of reduced mass mu stick, sqrt(2 E_loss/mu), of equal ones 2 sqrt e.
 template <class T> T critical_closing_speed(const T& loss, const T& mass_left, const T& mass_right) {
   return square_root(T(T(2) * loss * ((mass_left + mass_right) / (mass_left * mass_right))));
 }

@@ -92,8 +92,7 @@ template <class T> class WetZone {
 
   /// The force in the zone. With f = u dp = 2 E_loss/(1 + q), q = sqrt(1 - v_c^2/u^2), the difference n_+ f_+ - n_- f_-
   /// is taken apart into (n_+ - n_-) (f_+ + f_-)/2 + (n_+ + n_-) (f_+ - f_-)/2: both have the sign of x, nothing
-  /// cancels. It continues smoothly a little beyond the edges, for integrators that evaluate there, until the slower
-  /// row reaches v_c.
+  /// cancels. It continues smoothly a little beyond the edges, for integrators, until the slower row reaches v_c.
   T inner_force(const T& x) const {
     const T plus = right_mover_velocity(x);
     const T minus = right_mover_velocity(T(-x));  // speed of left-movers

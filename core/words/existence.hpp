@@ -191,8 +191,7 @@ template <Real T, class F> std::optional<T> root_between(const T& a, const T& b,
   return x1;
 }
 
-// Where the state's eigenvalue meets another one, between a restitution at which it exists and one at which it does
-// not; unresolved if it does not.
+// Where the state's eigenvalue meets another one, between restitutions with and without the state; else unresolved.
 template <Real T> End<T> meeting_near(const System<T>& system, const T& yes, const T& no, const Pairs<T>& known) {
   End<T> end;
   const auto p_at = [&](const T& r) { return characteristic_polynomial(system.velocities(r)); };

@@ -6,9 +6,8 @@
 //
 // The first is linear in w whatever the gaps; for given closing speeds the second is linear in g. Over a word they are
 // matrices, the velocity map and the gap map. The gap map is taken backwards in time: the gap of the collision before,
-// now g[k], was 0 then, so t = g[k]/(r c). Forwards the self-similar state is mostly unstable, and its eigenvalue is
-// the smallest one, a difference of larger numbers; backwards it is the largest one. A wall is a particle of infinite
-// mass.
+// now g[k], was 0 then, so t = g[k]/(r c). Forwards the self-similar state is mostly unstable, and its eigenvalue the
+// smallest one, a difference of larger numbers; backwards it is the largest. A wall is a particle of infinite mass.
 
 #include <cstddef>
 #include <vector>
@@ -50,8 +49,7 @@ template <Real T> void collide(std::vector<T>& w, std::size_t at, const T& r, co
   w[at] = planted(3) ? closing - lost * r : -(r * closing);
 }
 
-// The flight, backwards from the collision at a gap to the one before it at gap `before`; w are the closing speeds in
-// between. Returns its time.
+// The flight, backwards from a collision to the one before it at gap `before`, with closing speeds w. Returns its time.
 template <Real T> T fly_back(std::vector<T>& g, std::size_t before, const std::vector<T>& w) {
   const T time = -g[before] / w[before];
   for (std::size_t i = 0; i < g.size(); ++i) g[i] += planted(4) ? T(-(w[i] * time)) : T(w[i] * time);

@@ -132,10 +132,7 @@ template <Enclosing N> class WorldLines {
   // They change places; the seam stays where it is in the line.
   void pass(ParticleIndex l, ParticleIndex r) {
     const ParticleIndex before = links_[l].left, after = links_[r].right;
-    if (seam_ == l)
-      seam_ = r;
-    else if (seam_ == r)
-      seam_ = l;
+    seam_ = seam_ == l ? r : seam_ == r ? l : seam_;
     link(r, l);
     if (before == r) return link(l, r);  // two of them on a ring
     link(before, r);

@@ -15,6 +15,7 @@
 // log(replicas), see tests/core/ensemble/ensemble_test.cpp.
 
 #include <algorithm>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <iterator>
@@ -85,12 +86,8 @@ class MomentTree {
   /// Statistics of the whole set.
   Moments total() const {
     const std::scoped_lock lock(mutex_);
-    unsigned level = 0;
-    if (!nodes_.empty()) {
-      const ReplicaRange last = range(std::prev(nodes_.end()));
-      while ((last.end() - 1) >> level) ++level;
-    }
-    return fold({0, std::uint64_t{1} << level});
+    if (nodes_.empty()) return {};
+    return fold({0, std::bit_ceil(range(std::prev(nodes_.end())).end())});
   }
 
   /// The nodes of the set, by index.
@@ -118,10 +115,28 @@ class MomentTree {
     return holds_some_of(wanted);
   }
 
-  /// The missing ones of these replicas, in order.
-  std::vector<ReplicaRange> missing(ReplicaRange wanted) const { return gaps(wanted, false); }
-  /// The replicas that are present.
-  std::vector<ReplicaRange> present() const { return gaps({0, std::uint64_t{1} << 63}, true); }
+  /// The replicas that are present, in order.
+  std::vector<ReplicaRange> present() const {
+    const std::scoped_lock lock(mutex_);
+    std::vector<ReplicaRange> ranges;
+    for (auto at = nodes_.begin(); at != nodes_.end(); ++at)
+      if (!ranges.empty() && ranges.back().end() == at->first)
+        ranges.back().count += range(at).count;
+      else
+        ranges.push_back(range(at));
+    return ranges;
+  }
+  /// The missing ones of these replicas.
+  std::vector<ReplicaRange> missing(ReplicaRange wanted) const {
+    std::vector<ReplicaRange> gaps;
+    ReplicaIndex done = wanted.first;
+    for (const ReplicaRange& held : present()) {
+      if (const ReplicaIndex to = std::min(held.first, wanted.end()); done < to) gaps.push_back({done, to - done});
+      done = std::max(done, held.end());
+    }
+    if (done < wanted.end()) gaps.push_back({done, wanted.end() - done});
+    return gaps;
+  }
 
  private:
   struct Held {
@@ -180,30 +195,6 @@ class MomentTree {
     if (range(at) == whole) return *at->second.moments;
     const std::uint64_t half = whole.count / 2;
     return combine(fold({whole.first, half}), fold({whole.first + half, half}));
-  }
-
-  std::vector<ReplicaRange> gaps(ReplicaRange wanted, bool complement) const {
-    const std::scoped_lock lock(mutex_);
-    std::vector<ReplicaRange> ranges;
-    const auto put = [&](ReplicaIndex from, ReplicaIndex to) {
-      if (from >= to) return;
-      if (!ranges.empty() && ranges.back().end() == from)
-        ranges.back().count += to - from;
-      else
-        ranges.push_back({from, to - from});
-    };
-    ReplicaIndex done = wanted.first;
-    for (auto at = nodes_.begin(); at != nodes_.end(); ++at) {
-      const ReplicaIndex from = std::clamp(at->first, wanted.first, wanted.end()),
-                         to = std::clamp(range(at).end(), wanted.first, wanted.end());
-      if (complement)
-        put(from, to);
-      else
-        put(done, from);
-      done = std::max(done, to);
-    }
-    if (!complement) put(done, wanted.end());
-    return ranges;
   }
 
   mutable std::mutex mutex_;

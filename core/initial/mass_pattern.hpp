@@ -30,6 +30,9 @@ template <Real T> class MassPattern {
       identical_ = identical_ && masses_[j] == masses_[0];
     }
     if (identical) identical_ = *identical;
+    if (masses_.empty()) return;
+    least_ = *std::min_element(masses_.begin(), masses_.end());
+    greatest_ = *std::max_element(masses_.begin(), masses_.end());
   }
 
   // Random masses. Throws std::invalid_argument unless 0 < least < greatest < infinity and 0 < count < 2^31.
@@ -63,14 +66,8 @@ template <Real T> class MassPattern {
     if (sums_) return drawn(sum_of(particle, particle + 1));
     return masses_.empty() ? T(1) : masses_[static_cast<std::size_t>(particle % period())];
   }
-  T least() const {
-    if (sums_) return least_;
-    return masses_.empty() ? T(1) : *std::min_element(masses_.begin(), masses_.end());
-  }
-  T greatest() const {
-    if (sums_) return greatest_;
-    return masses_.empty() ? T(1) : *std::max_element(masses_.begin(), masses_.end());
-  }
+  T least() const { return least_; }
+  T greatest() const { return greatest_; }
   // The mass of particles [from, to): the sum over entries of number times mass.
   T total(ParticleIndex from, ParticleIndex to) const {
     if (sums_) return T(to - from) * masses_[0] + T(sum_of(from, to)) * unit_;
@@ -94,7 +91,8 @@ template <Real T> class MassPattern {
   std::vector<T> masses_;  // of random masses: the two between which they are
   bool identical_ = true;
   std::shared_ptr<const std::vector<std::int64_t>> sums_;  // of random masses, over the particles before each one
-  T unit_{0}, least_{0}, greatest_{0};                     // of random masses
+  T unit_{0};                                              // of random masses
+  T least_{1}, greatest_{1};
 };
 
 }  // namespace cradle

@@ -44,8 +44,7 @@ inline double sticky_clusters_per_particle(const FreeCooling& gas, double t) {
 /// Haff's time tau; throws std::domain_error for an elastic gas.
 inline double haff_time(const FreeCooling& gas, double restitution) {
   if (!(restitution < 1)) throw std::domain_error("an elastic gas does not cool");
-  constexpr double root_pi = 1.7724538509055160;
-  return root_pi / (gas.density * (1 - restitution) * (1 + restitution) * std::sqrt(gas.variance));
+  return 1 / std::numbers::inv_sqrtpi / (gas.density * (1 - restitution) * (1 + restitution) * std::sqrt(gas.variance));
 }
 
 /// Energy per particle by Haff's law.

@@ -176,11 +176,9 @@ template <PiecewiseForce Force, class Stepper> class ClusterMotion {
       meet(event.time);
     } else {
       const std::size_t i = event.kind == Kind::first_leaves ? 0 : 1;
-      const auto edges = force_.edges();
-      const std::size_t below = region_[i] > 0 ? region_[i] - 1 : 0;
-      const bool at_lower = region_[i] > 0 && (region_[i] == edges.size() ||
-                                               state_[2 * i] < (edges[below] + edges[region_[i]]) / 2 / rules_.length);
-      state_[2 * i] = edges[at_lower ? below : region_[i]] / rules_.length;
+      const double x = state_[2 * i] * rules_.length;  // beside the edge that it crosses
+      const auto away = [x](double edge) { return magnitude(edge - x); };
+      state_[2 * i] = *std::ranges::min_element(force_.edges(), {}, away) / rules_.length;
       settle(i, event.time);
     }
     stepper_.initialize(state_, begin_, stepper_.current_time_step());

@@ -1,6 +1,5 @@
 #pragma once
-// These values hold what a proof (checker.hpp) says: where it is in doubt, and what is certain of all particles at a
-// time. Certificates are made from them.
+// What a proof (checker.hpp) says: where it is in doubt, and what is certain at a time. Certificates are made from it.
 
 #include <algorithm>
 #include <cmath>

@@ -7,7 +7,6 @@
 // the same probability 1 - q, whatever the others hold. This is a Poisson process, looked at with that resolution.
 // Where the length is given, on a ring and between walls, N particles are at N independent, uniform places: with gaps
 // e_0, ..., e_N the sums e_0 + ... + e_k, over the sum of all, are distributed like N sorted uniform numbers.
-// All places are held, 8 bytes a particle.
 
 #include <cstdint>
 #include <memory>

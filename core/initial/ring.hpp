@@ -7,7 +7,6 @@
 // particle, from the first particles. For masses that differ the velocity of the centre of mass, sum m_b n_b / sum m_b
 // of the integers n_b, is a fraction: it is subtracted in the working precision; closing speeds do not contain it.
 
-#include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
@@ -38,7 +37,6 @@ template <Real T> class Ring final : public OnLattice<T> {
  public:
   // `deviation`: standard deviation of the velocities. Throws std::invalid_argument for no particles, 2^31 or more of
   // them, a length or deviation that is not positive and finite, or a pattern of masses that does not divide the ring.
-  // All velocities are held, 8 bytes a particle.
   Ring(ParticleIndex count, T length, T deviation, const VelocityDraw& draw, Displacement displacement,
        MassPattern<T> masses = {})
       : OnLattice<T>(count, T(length / (T(count) * T(displacement_unit))), std::move(displacement), std::move(masses)),

@@ -20,8 +20,7 @@ namespace cradle {
 
 template <Real T> struct Row {
   ParticleIndex count;
-  T velocity;
-  T spacing;
+  T velocity, spacing;
 };
 
 template <Real T> struct CentralParticle { T mass, velocity; };

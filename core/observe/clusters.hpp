@@ -14,8 +14,7 @@ namespace cradle {
 
 template <Real T> struct Cluster {
   T mass{0}, x{0}, v{0};
-  // The initial number of the particle that names the cluster. It is kept when clusters pass each other; when they
-  // merge it is that of the heavier one.
+  // Initial number of the particle that names it: kept when clusters pass; when they merge, that of the heavier one.
   ParticleIndex index = -1;
 };
 

@@ -50,10 +50,7 @@ class ScenarioWatch {
   // Call it before each collision, with the numbers of its particles and of the merges until then.
   void collision(ParticleIndex left, ParticleIndex right, double time, std::uint64_t merges) {
     settle(merges);
-    if (!pair_ ||
-        std::minmax(left, right) != std::pair<const ParticleIndex&, const ParticleIndex&>(pair_->first, pair_->second))
-      return;
-    meeting_ = {time, merges};
+    if (pair_ == std::pair<ParticleIndex, ParticleIndex>(std::minmax(left, right))) meeting_ = {time, merges};
   }
 
   // Takes a sample when all collisions up to `time` (since the start) are made.

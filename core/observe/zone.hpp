@@ -12,7 +12,6 @@
 // from u0 to 0, which is u0/(u0 - u_crit) times as wide.
 // Sampling and units: those of the scene; float64.
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>

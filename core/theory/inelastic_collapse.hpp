@@ -100,8 +100,7 @@ template <class T> class CollapseSequence {
   }
 
  private:
-  T eps_;
-  T coupling_;
+  T eps_, coupling_;
   CollapseCollision<T> now_;
   T next_speed_;
 };

@@ -92,8 +92,7 @@ std::vector<std::vector<T>> speeds_of(const Word& word, const T& r, const Shares
   return speeds;
 }
 
-// The map from the last collision of a period back to the last one before it. It maps the gaps that these two do not
-// close; the gap that both close is 0 both times.
+// The map from the last collision of a period back to the last one before it, of all gaps but that which both close.
 template <Real T> Matrix<T> gap_map(const Period& period, const std::vector<std::vector<T>>& speeds) {
   const std::size_t gaps = speeds.front().size(), closed = period.word.back();
   const auto open = [closed](std::size_t k) { return k < closed ? k : k + 1; };

@@ -102,11 +102,8 @@ template <Enclosing N> class Inspection {
     const ParticleIndex next = lines_.right(b);
     if (next == lines_.none || next == b) return next;
     if (!(b == now_.l && next == now_.r)) check_gap(b, next, x);
+    if (walls_.pulled() && (lines_.is_wall(b) || lines_.is_wall(next))) state.over = false;
     if (!state.over) return next;
-    if (walls_.pulled() && (lines_.is_wall(b) || lines_.is_wall(next))) {
-      state.over = false;
-      return next;
-    }
     const N closing = lines_[b].velocity - lines_[next].velocity;
     state.over = is_negative(closing) || closing == motion_.zero;
     return next;

@@ -193,49 +193,44 @@ template <Real T, class F> std::optional<T> root_between(const T& a, const T& b,
 
 // Where the state's eigenvalue meets another one, between restitutions with and without the state; else unresolved.
 template <Real T> End<T> meeting_near(const System<T>& system, const T& yes, const T& no, const Pairs<T>& known) {
-  End<T> end;
   const auto p_at = [&](const T& r) { return characteristic_polynomial(system.velocities(r)); };
-  const T& lambda = known.speeds.value;
+  const T& near = known.speeds.value;
+  T lambda(0);
   for (const T& turn : real_roots(derivative(p_at(yes)), T(0), T(1)))
-    if (!is_positive(end.lambda) || magnitude(T(turn - lambda)) < magnitude(T(end.lambda - lambda))) end.lambda = turn;
+    if (!is_positive(lambda) || magnitude(T(turn - near)) < magnitude(T(lambda - near))) lambda = turn;
   const auto extreme = [&](const T& r) {
     const Polynomial<T> p = p_at(r), first = derivative(p), second = derivative(first);
-    for (int step = 0; step < 12; ++step) end.lambda -= value_at(first, end.lambda) / value_at(second, end.lambda);
-    return value_at(p, end.lambda);
+    for (int step = 0; step < 12; ++step) lambda -= value_at(first, lambda) / value_at(second, lambda);
+    return value_at(p, lambda);
   };
-  if (!is_positive(end.lambda) || is_negative(extreme(yes)) == is_negative(extreme(no))) return {};
+  if (!is_positive(lambda) || is_negative(extreme(yes)) == is_negative(extreme(no))) return {};
   const auto root = root_between(yes, no, extreme);
   if (!root) return {};
-  end.is = End<T>::Is::meeting;
-  end.at = *root;
-  extreme(end.at);
-  return end;
+  extreme(*root);
+  return {.is = End<T>::Is::meeting, .at = *root, .lambda = lambda};
 }
 
 // Where a margin of the state becomes 0.
 template <Real T> End<T> equality_near(const System<T>& system, const T& yes, const T& no, const Pairs<T>& known) {
-  End<T> end;
   Pairs<T> pairs = followed(system, yes, known);
   const auto values = [&](const T& r) {
     pairs = followed(system, r, std::move(pairs));
     return margins(system, r, pairs);
   };
   const std::vector<Margin<T>> at_yes = values(yes), at_no = values(no);
+  std::size_t margin = 0;
   std::optional<T> nearest;  // as a share of the way
   for (std::size_t k = 0; k < at_yes.size(); ++k) {
     const T a = at_yes[k].value, b = at_no[k].value;
     if (!is_positive(a) || !is_negative(b)) continue;
     const T share = a / (a - b);
     // Where several are 0 at once, the first one, which may be a closing speed: then gaps need not be enclosed.
-    if (!nearest || share < *nearest * (T(1) - T(1) / T(1'000'000))) nearest = share, end.margin = k;
+    if (!nearest || share < *nearest * (T(1) - T(1) / T(1'000'000))) nearest = share, margin = k;
   }
-  if (!nearest) return end;
-  const auto root = root_between(yes, no, [&](const T& r) { return values(r)[end.margin].value; });
-  if (!root) return end;
-  end.is = End<T>::Is::equality;
-  end.at = *root;
-  end.pairs = std::move(pairs);
-  return end;
+  if (!nearest) return {};
+  const auto root = root_between(yes, no, [&](const T& r) { return values(r)[margin].value; });
+  if (!root) return {};
+  return {.is = End<T>::Is::equality, .at = *root, .margin = margin, .pairs = std::move(pairs)};
 }
 
 template <Real T> End<T> end_near(const System<T>& system, const T& yes, const T& no, const Pairs<T>& known) {

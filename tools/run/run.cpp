@@ -51,6 +51,13 @@ Scene without_tables(Scene scene) {
   return scene;
 }
 
+void SceneRun::require_in_progress() const {
+  if (over_)
+    throw Error({scene_.name, 0, ""}, "the run is over",
+                std::string(end_row(over_->end).text) + " at t = " + time().text(),
+                "write its result, or begin another one");
+}
+
 RunOutcome run_scene(const Scene& scene, const RunOptions& options, Sink& sink) {
   if (scene.initial.type == InitialType::clusters) return check_built(scene), run_clusters(scene, options, sink);
   const std::unique_ptr<SceneRun> run = begin_run(scene, options, sink);

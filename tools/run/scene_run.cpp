@@ -5,9 +5,9 @@
 #include <utility>
 
 #include "cradle/tools/record/measurements.hpp"
-#include "cradle/tools/record/schedule.hpp"
 #include "cradle/tools/run/report.hpp"
 #include "cradle/tools/run/run_guards.hpp"
+#include "cradle/tools/run/run_sample.hpp"
 #include "cradle/tools/theory/cost.hpp"
 
 namespace cradle::tools {
@@ -231,39 +231,13 @@ class EngineRun final : public SceneRun {
     inspected_ = time;
     notify_observer(now, false);
     sink_.check_clock();
-    if (sink_.due())
-      keep(time);
-    else if (measurements_.many_rows())
-      put_rows();
+    if (sink_.due()) keep(time);
+    if (measurements_.many_rows()) put_rows();
     if (sink_.for_statistics()) now_ = std::move(state);
     return true;
   }
-  // `at_collision`: the run ends at this time, with a collision.
   void notify_observer(const RunState& now, bool at_collision) {
-    if (options_.observer == nullptr) return;
-    const SampledState& state = now.state();
-    const Number& time = now.time.exact;
-    const auto text = [](const std::optional<Number>& x) { return x ? x->text() : std::string(); };
-    const auto wall = [](const SampledState::Wall& of) {
-      return SampledWall{of.collisions, of.given.text(), of.momentum.text(), of.dissipated.text()};
-    };
-    RunSample sample{.time = {now.time.meant.value, time.text()},
-                     .epsilon = engine_->epsilon(),
-                     .requested = at_collision ? std::vector{RequestedTime{Decimal(time.text()), true, false, true}}
-                                               : plan_.requested(scene_, time),
-                     .of_series = plan_.series().hold(time),
-                     .at_collision = at_collision,
-                     .counts = state.counts,
-                     .energy = state.energy.text(),
-                     .front_left = text(state.front_left),
-                     .front_right = text(state.front_right),
-                     .particles = {},
-                     .walls = {wall(state.walls[0]), wall(state.walls[1])}};
-    using enum RunState::Column;
-    if (!at_collision && plan_.snapshots().hold(time))
-      sample.particles = {now.range().first,  now.range().second, now.index(),
-                          now.column_text(x), now.column_text(v), now.column_text(m)};
-    options_.observer->sample(sample);
+    if (options_.observer != nullptr) options_.observer->sample(run_sample(scene_, plan_, *engine_, now, at_collision));
   }
 
   void end_with(Status status) {
@@ -315,13 +289,6 @@ class EngineRun final : public SceneRun {
 };
 
 }  // namespace
-
-void SceneRun::require_in_progress() const {
-  if (over_)
-    throw Error({scene_.name, 0, ""}, "the run is over",
-                std::string(end_row(over_->end).text) + " at t = " + time().text(),
-                "write its result, or begin another one");
-}
 
 std::unique_ptr<SceneRun> begin_run(const Scene& scene, const RunOptions& options, Sink& sink) {
   check_built(scene);

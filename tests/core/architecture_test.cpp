@@ -1,7 +1,7 @@
 // The layers, checked in the sources. core/ includes only the standard library and itself: no input or output, no
 // threads (except the ensemble, one file of which uses oneTBB), no vectors (except one file, which uses Highway), no
 // Boost. It uses the scalar only through the concept Real, so no std:: mathematics on it, except by `using` as a
-// fallback for built-in types. Every header is guarded and begins with a comment.
+// fallback for built-in types. Every header is guarded and begins with a comment. Lines and files are short.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -150,6 +150,23 @@ TEST(Architecture, EveryHeaderIsGuardedAndOpensWithItsIdea) {
       EXPECT_TRUE(is_comment(first) || is_comment(second)) << file;
     }
   }
+}
+
+// At most 120 characters in a line and, outside tests, 300 lines in a file, but for the table of keys.
+TEST(Architecture, LinesAndFilesAreShort) {
+  const std::set<fs::path> extensions{".hpp", ".cpp", ".inl", ".py", ".js", ".sh"};
+  const auto begins_character = [](unsigned char byte) { return (byte & 0xC0) != 0x80; };
+  for (const std::string folder : {"core", "precision", "tools", "tests", "bench"})
+    for (const auto& entry : fs::recursive_directory_iterator(fs::path(source_folder) / folder)) {
+      if (!extensions.contains(entry.path().extension())) continue;
+      std::ifstream in(entry.path());
+      std::string text;
+      int lines = 0;
+      for (; std::getline(in, text); ++lines)
+        EXPECT_LE(std::ranges::count_if(text, begins_character), 120) << entry.path() << ':' << lines + 1;
+      const bool may_be_long = folder == "tests" || entry.path().filename() == "fields.cpp";
+      EXPECT_TRUE(may_be_long || lines <= 300) << entry.path() << ": " << lines;
+    }
 }
 
 }  // namespace cradle::test::architecture_test

@@ -95,9 +95,10 @@ ReplicaLayout replica_layout(const Scene& scene) {
   return layout;
 }
 
-ReplicaRow ReplicaLayout::row(std::uint64_t index, const RunOutcome& run) const {
-  const RunEnd outcome = end_row(run.end).status == Exit::collapse ? RunEnd::collapsed : run.end;
-  ReplicaRow row{index, outcome, run.collisions, run.merges, std::vector<double>(numbers.size(), missing)};
+ReplicaRow ReplicaLayout::row(std::uint64_t index, const RunOutcome& run, ReplicaRow row) const {
+  row.index = index, row.collisions = run.collisions, row.merges = run.merges;
+  row.outcome = end_row(run.end).status == Exit::collapse ? RunEnd::collapsed : run.end;
+  row.numbers.assign(numbers.size(), missing);
   row.numbers.front() = run.energy;
   const auto put = [&](std::string_view name, double value) {
     for (std::size_t k = 1; k < numbers.size(); ++k)

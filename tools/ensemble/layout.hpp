@@ -56,7 +56,8 @@ struct ReplicaLayout {
   using SeriesNumbers = std::vector<std::vector<double>>;
   void put_values(RunEnd end, const SeriesNumbers& series, const std::vector<Group>& tables,
                   std::vector<double>& values) const;
-  ReplicaRow row(std::uint64_t index, const RunOutcome& run) const;
+  /// In the memory of another row.
+  ReplicaRow row(std::uint64_t index, const RunOutcome& run, ReplicaRow row = {}) const;
 };
 
 /// Throws Error, naming the key, if the scene cannot be run as an ensemble.

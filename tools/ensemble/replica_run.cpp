@@ -39,12 +39,11 @@ const RunOutcome& ReplicaRun::run_again() {
 void ReplicaRun::add(ReplicaIndex replica, EnsembleRecord& to) {
   const ReplicaLayout& layout = ensemble_.layout();
   scene_.initial.replica = replica;
-  ReplicaRow row;
   ReplicaTables kept;
   try {
     const auto finished = [&](const RunOutcome& run) {
       if (run.end == RunEnd::interrupted) throw ReplicaAbandoned();
-      row = layout.row(replica, run);
+      row_ = layout.row(replica, run, std::move(row_));
     };
     if (runner_ || scene_.output.every_replica || scene_.initial.type == InitialType::clusters) {
       const RunOutcome run = runner_ ? runner_(scene_, options_) : run_scene(scene_, options_);  // with all its tables
@@ -67,7 +66,7 @@ void ReplicaRun::add(ReplicaIndex replica, EnsembleRecord& to) {
     run_.reset();
     return ensemble_.put_failure(to, replica, message_of_exception());
   }
-  ensemble_.put(to, row, values_);
+  ensemble_.put(to, row_, values_);
   if (!kept.empty()) to.kept.emplace(replica, std::move(kept));
 }
 

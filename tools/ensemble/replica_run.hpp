@@ -43,6 +43,7 @@ class ReplicaRun {
   Scene scene_;
   Numbers numbers_;
   std::unique_ptr<SceneRun> run_;
+  ReplicaRow row_;
   std::vector<double> values_;
 };
 

@@ -9,13 +9,14 @@ import re
 import warnings
 from collections.abc import Callable
 from numbers import Integral
-from typing import TYPE_CHECKING, Any, NamedTuple, Union
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from .commands import Scene, Settings, assignments, source_of
 from .compiled import module, threads_of
 from .errors import BAD_INPUT, Error, callable_of, imported, path_of
 from .result import Result, open
 from .scene import parse_toml
+from .timer import EXACT, Time, Timer, decimal_of
 
 if TYPE_CHECKING:
     import numpy as np
@@ -25,33 +26,6 @@ DIGITS = ("time", "energy", "x", "v", "m", "gap", "closing_speed")  # quantities
 MOST_COLLISIONS = 2 ** 64 - 1  # in a call of step: as many as a run can count
 PART, MOST_EVENTS, EVENT = 2 ** 20, 10 ** 7, 56  # collisions; bytes of one event
 MOST_CALLS = 1e9
-Time = Union[float, int, str, decimal.Decimal]
-EXACT = decimal.Context(prec=4096)  # for sums of times, which must not drift; wide types have many digits
-
-
-class Timer:
-    """A function that is called at times start + k step."""
-
-    def __init__(self, start: decimal.Decimal, step: decimal.Decimal, function: Callable[[Simulation], Any]):
-        self.start, self.step, self.function, self.count = start, step, function, 1
-
-    @property
-    def due(self) -> decimal.Decimal:
-        return EXACT.add(self.start, EXACT.multiply(self.step, self.count))
-
-    def call(self, simulation: Simulation) -> None:
-        self.count += 1  # first: the function may raise, and is not called again at this time
-        self.function(simulation)
-
-
-def decimal_of(value: Time) -> decimal.Decimal:
-    try:
-        number = decimal.Decimal(str(value))
-    except decimal.InvalidOperation:
-        number = decimal.Decimal("nan")
-    if not number.is_finite():
-        raise Error(f"not a time (found {value}): give a number", BAD_INPUT)
-    return number
 
 
 class Collision(NamedTuple):

@@ -5,6 +5,8 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <csignal>
 #include <cstdlib>
 
 #include "cradle/tools/support/notify.hpp"
@@ -45,9 +47,10 @@ std::optional<double> ProgressLine::due(Clock::time_point now) const {
 }
 
 void ProgressLine::draw(double share, const std::string& state) {
-  if (socket_ >= 0) {  // a caller that has ended or does not read misses the line
+  if (socket_ >= 0) {  // a caller that does not read misses the line; one that has ended waits for nothing any more
     const std::string line = fmt::format("{:.4f}\t{}\n", share, state);
-    [[maybe_unused]] const auto sent = ::send(socket_, line.data(), line.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
+    if (::send(socket_, line.data(), line.size(), MSG_DONTWAIT | MSG_NOSIGNAL) < 0 && errno == EPIPE)
+      std::raise(SIGTERM);
   } else if (terminal_) {
     constexpr int width = 30;
     const auto full = static_cast<int>(share * width);

@@ -1,7 +1,8 @@
 // Progress on standard error: a bar on a terminal, else a plain line every minute or, if requested, every ten seconds.
 // For a run: simulated time, collisions, collisions/s, time left where it can be predicted; for an ensemble: replicas,
 // replicas/s, time left. For programs that call this one: if CRADLE_PROGRESS_FD names a socket, each line is also
-// written there as `SHARE<tab>TEXT`, with SHARE from 0 to 1.
+// written there as `SHARE<tab>TEXT`, with SHARE from 0 to 1; and once that program has ended, this one is interrupted,
+// as by SIGTERM.
 #pragma once
 
 #include <chrono>

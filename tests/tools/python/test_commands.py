@@ -112,6 +112,20 @@ class Progress(small.Case):
         with progress.shown(False) as show:
             self.assertIsNone(show)
 
+    def test_the_program_ends_with_the_python_that_called_it(self):
+        code = f"import cradle; cradle.run('cooling', set={small.ENDLESS}, output='left.h5')"
+        child = subprocess.Popen([sys.executable, "-c", code])
+        while not os.path.exists("left.h5.part"):
+            time.sleep(0.01)
+        self.assertTrue(os.path.exists(".left.h5.cradle-lock"))
+        child.kill()
+        child.wait()
+        for _ in range(600):
+            if not os.path.exists(".left.h5.cradle-lock"):  # which the program holds until it ends
+                break
+            time.sleep(0.1)
+        self.assertFalse(os.path.exists(".left.h5.cradle-lock"))
+
     def test_ctrl_c_interrupts_the_program_which_can_go_on(self):
         until = 10000
         while True:  # until the run is so long that the signal comes before its end; elastic particles never stop

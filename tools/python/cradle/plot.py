@@ -6,10 +6,12 @@ The contents of a result decide which pictures it has: `cradle.plot.names(result
 paper's units, x/l, v/2u0, t 2u0/l, E/(m (2u0)^2) (m = 1); other scenes in their own units.
 
 Every function takes
+
     result   an opened result, or a path
     axes     matplotlib axes, one for each panel of the picture (Error says how many); by default a new figure in the
              style of the program
     theory   False leaves out the paper's predictions, which come from the program (`cradle theory`)
+
 and raises Error if the result does not have the data.
 """
 from __future__ import annotations

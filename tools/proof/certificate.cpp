@@ -60,14 +60,18 @@ std::string shown_time(const std::string& time) {
   return time.substr(0, std::min(end, most)) + "..." + time.substr(end);
 }
 
-// Tables of a run that no proof encloses: they are sums over what is proved, but rounded by the run alone.
-std::vector<std::string> of_run_alone(const Result& result) {
+// Tables of a run that no proof encloses: they are sums over what is proved, but rounded by the run alone; or a
+// snapshot at a time that is not proved, or at the end by a collapse.
+std::vector<std::string> of_run_alone(const Result& result, const Certificate& certificate) {
   std::vector<std::string> names;
   for (const Group& group : result.groups) {
-    const std::string name = group.name.substr(0, group.name.find('/'));
-    if (name != "series" && name != "snapshots" && name != "events" && name != "exact" &&
-        (names.empty() || names.back() != name))
-      names.push_back(name);
+    std::string name = group.name.substr(0, group.name.find('/'));
+    if (name == "series" || name == "events" || name == "exact") continue;
+    if (name == "snapshots") {
+      if (std::ranges::count(certificate.snapshots, "certificate/" + group.name, &Group::name) > 0) continue;
+      name = group.name;
+    }
+    if (names.empty() || names.back() != name) names.push_back(name);
   }
   return names;
 }
@@ -145,7 +149,7 @@ std::string certificate_text(const Certified& run) {
         if (of.temperature || of.speed != Decimal("0")) text += fmt::format(", energy given {}", shown(wall->given));
         text += '\n';
       }
-    if (const auto alone = of_run_alone(run.outcome.result); run.proved() && !alone.empty())
+    if (const auto alone = of_run_alone(run.outcome.result, c); run.proved() && !alone.empty())
       text +=
           fmt::format("  no bounds for {}: numbers of the run, computed from what is proved\n", fmt::join(alone, ", "));
     if (run.proved() && last.over)
@@ -190,7 +194,7 @@ Result certified_result(Certified run) {
                      {"undecided", run.undecided()},
                      {"proved_until", c.samples.empty() ? "" : c.samples.back().time_text},
                      {"not_proved", run.not_proved()},
-                     {"of_run_alone", fmt::format("{}", fmt::join(of_run_alone(result), ", "))},
+                     {"of_run_alone", fmt::format("{}", fmt::join(of_run_alone(result, c), ", "))},
                      {"precision", precision_name(run.scene.run)},
                      {"digits", std::uint64_t{c.digits}},
                      {"collisions_in_doubles", c.in_doubles},

@@ -67,7 +67,7 @@ TEST_F(Certified, ACollapseIsProvedToTheEndOfTheRangeOfDoubles) {
 #ifndef CRADLE_WITH_MPFR
   certify("collapse3", 5);
 #else
-  const Printed printed = certify("collapse3");
+  const Printed printed = certify("collapse3 --set 'output.snapshots=[1.7]'");
   const Result r = result();
   EXPECT_EQ(of_certificate<std::uint64_t>("collisions"), 322U);
   EXPECT_LT(numbers(r, "certificate", "gap").back(), -290);
@@ -75,8 +75,10 @@ TEST_F(Certified, ACollapseIsProvedToTheEndOfTheRangeOfDoubles) {
   EXPECT_LT(numbers(r, "series", "energy_high").back(), 1e-250);
   EXPECT_TRUE(begins(printed.out, "proved: 322 collisions"));
   EXPECT_TRUE(has(printed.out, "not proved: that this is an inelastic collapse"));
+  EXPECT_TRUE(has(printed.out, "no bounds for snapshots/0001, initial, collapse: ")) << "the one at the end";
   EXPECT_TRUE(has(printed.out, "estimated by the run:\ninelastic collapse at"));
   EXPECT_NE(of_certificate<std::string>("not_proved"), "");
+  EXPECT_EQ(of_certificate<std::string>("of_run_alone"), "snapshots/0001, initial, collapse");
 #endif
 }
 

@@ -4,6 +4,7 @@ links lead to the right place both in the repository and on the site.
 The manual's pages are at the top of the site, those of other folders in folders of the same names. A source file that
 a page links to is copied as text; a link to a folder leads to the page of that folder, or becomes plain text.
 """
+import json
 import posixpath
 import re
 from pathlib import Path
@@ -116,11 +117,17 @@ def on_page_markdown(markdown, page, **_):
 
 
 def on_post_build(config, **_):
-    """The index of the search once more, as a script, for pages that are opened from a disk."""
+    """The words in the titles of *How do I* are tags as well, which the search ranks first. Its index once more, as a
+    script, for pages that are opened from a disk."""
     folder = Path(config["site_dir"]) / "search"
-    index = (folder / "search_index.json").read_text(encoding="utf-8")
+    index = json.loads((folder / "search_index.json").read_text(encoding="utf-8"))
+    for page in index["docs"]:
+        if page["location"].startswith("how-to-"):
+            page["tags"] = page["title"].split()
+    text = json.dumps(index)
+    (folder / "search_index.json").write_text(text, encoding="utf-8")
     # Version 9 of the theme takes it from __index, earlier ones from __search.
-    script = f"var __index = {index};\nvar __search = {{index: Promise.resolve(__index)}};\n"
+    script = f"var __index = {text};\nvar __search = {{index: Promise.resolve(__index)}};\n"
     (folder / "search_index.js").write_text(script, encoding="utf-8")
 
 

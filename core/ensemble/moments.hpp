@@ -73,6 +73,13 @@ struct Join {
   double share, weight;
 };
 
+inline void join_extremes(Moments& left, const Moments& right) {
+  const std::size_t n = left.entries();
+  for (std::size_t i = 0; i < n; ++i) left.least[i] = right.least[i] < left.least[i] ? right.least[i] : left.least[i];
+  for (std::size_t i = 0; i < n; ++i)
+    left.greatest[i] = right.greatest[i] > left.greatest[i] ? right.greatest[i] : left.greatest[i];
+}
+
 }  // namespace detail
 
 // The moments of both sets. Those without replicas change no bit. Throws std::invalid_argument if lengths differ.
@@ -97,8 +104,7 @@ inline Moments combine(Moments left, const Moments& right) {
         left.mean[i] = right.mean[i], left.squares[i] = right.squares[i];
     }
   }
-  for (std::size_t i = 0; i < n; ++i) left.least[i] = std::min(left.least[i], right.least[i]);
-  for (std::size_t i = 0; i < n; ++i) left.greatest[i] = std::max(left.greatest[i], right.greatest[i]);
+  detail::join_extremes(left, right);
   left.replicas += right.replicas;
   return left;
 }

@@ -95,7 +95,7 @@ ReplicaLayout replica_layout(const Scene& scene) {
   return layout;
 }
 
-ReplicaRow ReplicaLayout::row(std::uint64_t index, const RunOutcome& run, ReplicaRow row) const {
+void ReplicaLayout::put_row(std::uint64_t index, const RunOutcome& run, ReplicaRow& row) const {
   row.index = index, row.collisions = run.collisions, row.merges = run.merges;
   row.outcome = end_row(run.end).status == Exit::collapse ? RunEnd::collapsed : run.end;
   row.numbers.assign(numbers.size(), missing);
@@ -107,7 +107,6 @@ ReplicaRow ReplicaLayout::row(std::uint64_t index, const RunOutcome& run, Replic
   };
   if (run.collapsed_at) put(collapse_time, *run.collapsed_at);
   for (const auto& [name, value] : run.summary) put(name, value);
-  return row;
 }
 
 std::vector<double> ReplicaLayout::values(const RunOutcome& run) const {

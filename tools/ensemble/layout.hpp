@@ -56,8 +56,12 @@ struct ReplicaLayout {
   using SeriesNumbers = std::vector<std::vector<double>>;
   void put_values(RunEnd end, const SeriesNumbers& series, const std::vector<Group>& tables,
                   std::vector<double>& values) const;
-  /// In the memory of another row.
-  ReplicaRow row(std::uint64_t index, const RunOutcome& run, ReplicaRow row = {}) const;
+  void put_row(std::uint64_t index, const RunOutcome& run, ReplicaRow& row) const;
+  ReplicaRow row(std::uint64_t index, const RunOutcome& run) const {
+    ReplicaRow row;
+    put_row(index, run, row);
+    return row;
+  }
 };
 
 /// Throws Error, naming the key, if the scene cannot be run as an ensemble.

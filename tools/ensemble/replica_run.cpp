@@ -43,7 +43,7 @@ void ReplicaRun::add(ReplicaIndex replica, EnsembleRecord& to) {
   try {
     const auto finished = [&](const RunOutcome& run) {
       if (run.end == RunEnd::interrupted) throw ReplicaAbandoned();
-      row_ = layout.row(replica, run, std::move(row_));
+      layout.put_row(replica, run, row_);
     };
     if (runner_ || scene_.output.every_replica || scene_.initial.type == InitialType::clusters) {
       const RunOutcome run = runner_ ? runner_(scene_, options_) : run_scene(scene_, options_);  // with all its tables

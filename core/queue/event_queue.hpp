@@ -2,8 +2,8 @@
 // The event queue holds one key per gap in a binary tree of minima. Keys are updated in place; the root is the key of
 // the next gap.
 //
-// README.md (The order of collisions) says what a key is, and how close the times of two keys may be. Where they are
-// too close to be told apart, the caller compares exact times: `contested` says when that is necessary, and
+// README.md (The order of collisions) describes a key, and how close the times of two keys may be. Where keys do not
+// distinguish them, the caller compares exact times: `contested` is true where that is necessary, and
 // `for_each_before` lists the candidates. The keys of wide scalar types are made of rounded times, which may be off by
 // two units of the last bit that a key keeps of a time; `slack_` allows for that.
 

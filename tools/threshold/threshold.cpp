@@ -186,8 +186,13 @@ std::string threshold_text(const ThresholdProblem& question, const Threshold& fo
   std::string text = fmt::format("{}\n", question.what().text);
   for (const ThresholdEnd* end : {&found.low, &found.high})
     text += fmt::format("  {} = {}: {}\n    {}\n", question.key(), end->run.value, end->run.outcome, end->how);
-  return text + fmt::format("The outcome changes in between: {}. {} values tried; it may change elsewhere too.\n",
-                            found.proved() ? "proved" : "seen", found.runs.size());
+  text += fmt::format("The outcome changes in between: {}. {} values tried; it may change elsewhere too.\n",
+                      found.proved() ? "proved" : "seen", found.runs.size());
+  if (question.what().type == Compare::gap)
+    text +=
+        fmt::format("That is for run.stop_gap = {}: particles may come as near and part again, without a collapse.\n",
+                    question.scene_at(Decimal(found.low.run.value), false)->run.stop_gap->text);
+  return text;
 }
 
 Result threshold_result(const ThresholdProblem& question, const Threshold& found, const std::string& command) {

@@ -31,7 +31,7 @@ struct CompareRow {
 };
 inline constexpr std::array<CompareRow, 5> compared{{
     {Compare::collapse, "collapse", "whether the run ends at an inelastic collapse that is proved"},
-    {Compare::gap, "gap", "whether the run ends at a collapse or at run.stop_gap"},
+    {Compare::gap, "gap", "whether a gap falls below run.stop_gap, as in every collapse"},
     {Compare::collisions, "collisions", "number of collisions"},
     {Compare::merges, "merges", "number of merges"},
     {Compare::pair, "pair", "whether the two heavy clusters pass or stick"},

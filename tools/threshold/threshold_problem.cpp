@@ -133,8 +133,9 @@ std::optional<Scene> ThresholdProblem::scene_at(const Decimal& value, bool wide)
 std::optional<std::string> ThresholdProblem::outcome(const RunOutcome& run) const {
   const bool collapsed = run.end == RunEnd::collapsed || (compare_ == Compare::gap && run.end == RunEnd::small_gap);
   if (!collapsed && run.end != RunEnd::reached) return {};
-  if (compare_ == Compare::collapse || compare_ == Compare::gap || collapsed)
-    return std::string(collapsed ? end_row(run.end).text : no_collapse);
+  if (compare_ == Compare::gap)  // in a collapse, proved or not, gaps fall below any
+    return std::string(collapsed ? end_row(RunEnd::small_gap).text : "no gap so small");
+  if (compare_ == Compare::collapse || collapsed) return std::string(collapsed ? end_row(run.end).text : no_collapse);
   if (compare_ == Compare::collisions) return fmt::format("{} collisions", run.collisions);
   if (compare_ == Compare::merges) return fmt::format("{} merges", run.merges);
   if (at_low_.initial.type == InitialType::clusters)
@@ -145,7 +146,8 @@ std::optional<std::string> ThresholdProblem::outcome(const RunOutcome& run) cons
 }
 
 std::uint64_t ThresholdProblem::identity() const {
-  std::string text = fmt::format("{}\n{}\n{}\n{} {}\n", version, key_, what().name, wide_, wide_digits());
+  const auto of = compare_ == Compare::gap ? what().text : what().name;  // earlier, gaps had two outcomes
+  std::string text = fmt::format("{}\n{}\n{}\n{} {}\n", version, key_, of, wide_, wide_digits());
   for (const Decimal& end : {low_, high_}) text += end.text + '\n' + effective_toml(scene_at(end, false).value());
   return crc64(text);
 }

@@ -11,11 +11,11 @@ function microscopeAnchor(world, anchor) {
   const { e } = anchor;
   if (e < 0) {
     const a = anchor.a, b = microscopeOrder(world, -1).next(a), { gap, w } = microscopeRelative(world, a, b, -1);
-    const ofB = world.mass0 ? world.mass0[b] / (world.mass0[a] + world.mass0[b]) : 0.5;
+    const ofB = world.mass0[b] / (world.mass0[a] + world.mass0[b]);
     return { a, b, gap, speedA: w * ofB, speedB: -w * (1 - ofB), lab: world.v0[a] - w * ofB };
   }
   const passed = world.event[e] === MICROSCOPE.pass, merged = world.event[e] === MICROSCOPE.merge;
-  const from = world.left[e], to = world.right[e], ofTo = world.share ? world.share[e] : 0.5;
+  const from = world.left[e], to = world.right[e], ofTo = world.share[e];
   const ofFrom = world.after[e] * ofTo, ofOther = -world.after[e] * (1 - ofTo);
   const lab = world.velocity[world.slotLeft[e]] - ofFrom;
   if (merged) {
@@ -113,97 +113,66 @@ function microscopeChart(world, anchor, from, to, low, high, drift) {
   return null;
 }
 
-// Follows the particles around an anchor through collisions first .. last, forwards and backwards. Other particles are
-// known when they meet one of these, from their previous collision to their next one: each time as a separate line.
+// Follows the particles around an anchor through collisions first .. last, those nearest to it first: each goes its own
+// way, since its kicks are known. Other particles are known when they meet one of these, from their previous collision
+// to their next one: each time as a separate line.
 function microscopeFollow(world, anchor, around, from, to, first, last, most) {
-  const { left, right, list, begin, event, slotLeft, slotRight } = world, e = anchor.e, all = [];
+  const { left, right, list, begin, after, slotLeft, slotRight, ring } = world, e = anchor.e, all = [];
   for (const { particle } of around)
     for (let slot = microscopeSlotAfter(world, particle, first - 1);
          slot < begin[particle + 1] && list[slot] <= last; ++slot) {
       all.push(list[slot]);
       if (all.length > most) return null;
     }
-  const collisions = Int32Array.from(new Set(all)).sort();
-  const tau = microscopeTimes(world, e, collisions), xi = new Float64Array(collisions.length), lines = [];
-  const timeOf = (particle, slot) => slot < begin[particle] ? -Infinity : slot >= begin[particle + 1] ? Infinity :
-    microscopeBetween(world, e, list[slot]);
-  const at = (one, time) => one.xi + one.u * (time - one.tau);
-  // `slot`: of the last collision of the line so far, forwards or backwards.
-  const line = (particle, slot, now, place, u) => {
-    const made = { particle, points: [], speeds: [], slot, tau: now, xi: place, u, from: null, to: null };
-    lines.push(made);
-    return made;
-  };
-  const endLine = one => {
-    const end = Math.min(to, timeOf(one.particle, one.slot + 1), world.valid ? world.valid[one.particle] : Infinity);
-    one.to = [Math.max(end, one.tau), at(one, Math.max(end, one.tau))];
-  };
-  const beginLine = one => {
-    const start = Math.min(one.tau, Math.max(from, timeOf(one.particle, one.slot - 1)));
-    one.from = [start, at(one, start)];
-  };
-  // One pass through the collisions. `known`: the lines that continue, by particle. `step`: 1 forwards, -1 backwards.
-  const follow = (known, begins, ends, step, before, after, endHere, beginHere) => {
-    for (let i = begins; i !== ends; i += step) {
-      const k = collisions[i], now = tau[i];
-      let [a, b] = [[left[k], slotLeft[k]], [right[k], slotRight[k]]].map(([particle, slot]) => {
-        const one = known.get(particle);
-        if (!one || one.slot + step === slot) return one;
-        endHere(one);  // it has met others meanwhile
-        return null;
-      });
-      // Around a whole ring a particle is visible twice: drop the one further out.
-      if (world.ring && a && b && Math.abs(at(a, now) - at(b, now)) > world.ring / 2) {
-        const outer = Math.abs(at(a, now)) > Math.abs(at(b, now)) ? a : b;
-        endHere(outer);
-        if (outer === a) a = null; else b = null;
-      }
-      const w = before(k);
-      const speedA = a ? a.u : b.u + w, speedB = b ? b.u : a.u - w;
-      xi[i] = a && b ? (at(a, now) + at(b, now)) / 2 : at(a || b, now);
-      for (const [old, particle, slot, speed, kick] of [[a, left[k], slotLeft[k], speedA, -step * world.kickLeft[k]],
-                                                    [b, right[k], slotRight[k], speedB, step * world.kickRight[k]]]) {
-        let one = old;
-        if (!one) {
-          one = line(particle, slot, now, xi[i], speed);
-          beginHere(one, k);
+  const collisions = Int32Array.from(new Set(all)).sort(), n = collisions.length;
+  const places = new Map(Array.from(collisions, (k, i) => [k, i]));
+  const tau = microscopeTimes(world, e, collisions), xi = new Float64Array(n).fill(NaN);
+  const speedOfLeft = new Float64Array(n), drawn = [new Uint8Array(n), new Uint8Array(n)];  // left and right particles
+  // The line of a particle that is at `place` with the velocity u `now`, before its collision in `slot`.
+  const follow = (particle, slot, now, place, u) => {
+    const line = { particle, points: [], speeds: [] }, merger = microscopeMerger(world, particle);
+    const known = world.valid ? world.valid[particle] : merger < 0 ? Infinity : microscopeBetween(world, e, merger);
+    // On (step 1) or back (-1) through the collisions that are not drawn yet: the point [tau, xi] up to which it is known.
+    const end = (slot, step) => {
+      for (let t = now, x = place, speed = u;; slot += step) {
+        const inside = slot >= begin[particle] && slot < begin[particle + 1], k = inside ? list[slot] : -1;
+        const i = places.get(k), side = left[k] === particle ? 0 : 1;
+        if (i === undefined || drawn[side][i]) {
+          const due = inside ? microscopeBetween(world, e, k) : step * Infinity;
+          const stop = step > 0 ? Math.max(t, Math.min(to, due, known)) : Math.min(t, Math.max(from, due));
+          return [stop, x + speed * (stop - t)];
         }
-        known.set(particle, one);
-        one.points.push(i);
-        one.speeds.push(step > 0 ? speed + kick : speed);
-        Object.assign(one, { slot, tau: now, xi: xi[i], u: speed + kick });
+        x += speed * (tau[i] - t);
+        t = tau[i];
+        // Around a whole ring a particle is visible twice: here it is another one's neighbour a turn away.
+        if (ring && Math.abs(x - xi[i]) > ring / 2) return [t, x];
+        x = xi[i] = Number.isNaN(xi[i]) ? x : xi[i];
+        const kick = microscopeKick(world, particle, k), later = step > 0 ? speed + kick : speed;
+        line.points.push(i);
+        line.speeds.push(later);
+        speedOfLeft[i] = side === 0 ? later : later + after[k];
+        drawn[side][i] = 1;
+        speed += step * kick;
       }
-      after(k, known);
-    }
-    known.forEach(endHere);
+    };
+    line.from = end(slot - 1, -1);
+    line.points.reverse();
+    line.speeds.reverse();
+    line.to = end(slot, 1);
+    return line;
   };
-  const split = microscopeFirst(0, collisions.length, i => collisions[i] <= e);
-  const middle = around.map(({ particle, xi: place, u }) =>
-    line(particle, microscopeSlotAfter(world, particle, e), 0, place, u));
-  const byParticle = new Map(middle.map(one => [one.particle, one]));
-  const ended = new Set();  // slots of the collisions after which particles are known until their next one
-  const goneIn = k => event[k] === MICROSCOPE.merge ? microscopeGone(world, k) : -1;
-  follow(new Map(byParticle), split - 1, -1, -1, k => world.after[k], () => {}, beginLine, (one, k) => {
-    ended.add(one.slot);
-    if (goneIn(k) === one.particle) one.to = [one.tau, one.xi];
-    else endLine(one);
-  });
-  // Then forwards from the anchor.
-  for (const one of lines) {
-    one.points.reverse();
-    one.speeds.reverse();
-  }
-  around.forEach(({ particle, xi: place, u }, i) =>
-    Object.assign(middle[i], { slot: microscopeSlotAfter(world, particle, e) - 1, tau: 0, xi: place, u }));
-  follow(new Map(byParticle), split, collisions.length, 1, k => world.speed[k], (k, known) => {
-    const one = known.get(goneIn(k));
-    if (!one) return;
-    one.to = [one.tau, one.xi];
-    known.delete(one.particle);
-  }, endLine, one => {
-    beginLine(one);
-    if (ended.has(one.slot - 1)) one.from = [one.tau, one.xi];
-  });
+  const byParticle = new Map();
+  for (const { particle, xi: place, u } of [...around].sort((one, other) => Math.abs(one.xi) - Math.abs(other.xi)))
+    byParticle.set(particle, follow(particle, microscopeSlotAfter(world, particle, e), 0, place, u));
+  const lines = around.map(({ particle }) => byParticle.get(particle));
+  const others = i => {
+    const k = collisions[i];
+    if (!drawn[0][i]) lines.push(follow(left[k], slotLeft[k] + 1, tau[i], xi[i], speedOfLeft[i]));
+    if (!drawn[1][i]) lines.push(follow(right[k], slotRight[k] + 1, tau[i], xi[i], speedOfLeft[i] - after[k]));
+  };
+  const split = microscopeFirst(0, n, i => collisions[i] <= e);
+  for (let i = split - 1; i >= 0; --i) others(i);
+  for (let i = split; i < n; ++i) others(i);
   return { collisions, tau, xi, lines, byParticle };
 }
 

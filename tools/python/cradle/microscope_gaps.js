@@ -36,7 +36,7 @@ function microscopeKnownFrom(world, a, b, e, step) {
     const isA = step * ofA < step * ofB, [next, particle] = isA ? [ofA, a] : [ofB, b];
     kicks.push([next, isA ? microscopeKick(world, a, next) : -microscopeKick(world, b, next)]);
     if (isA) i += step; else j += step;
-    if (step > 0 && world.event[next] === MICROSCOPE.merge && microscopeGone(world, next) === particle) {
+    if (step > 0 && microscopeMerger(world, particle) === next) {
       // The particle that it merged into replaces it.
       const heir = microscopeOther(world, particle, next), slot = microscopeSlotAfter(world, heir, next);
       if (isA) { a = heir; i = slot; } else { b = heir; j = slot; }
@@ -75,10 +75,9 @@ function microscopeState(world, particle, e, since = 0) {
 
 // The mass of a particle right after collision e.
 function microscopeMass(world, particle, e) {
-  if (!world.share) return 1;
-  if (world.keepsOrder) return world.mass0[particle];
-  let mass = world.mass0 ? world.mass0[particle] : 1;
-  // The particle's share of the impulse at its next collision, or at its last one, gives its mass.
+  let mass = world.mass0[particle];
+  if (world.keepsOrder) return mass;
+  // By its mergers until then: each divides the mass by the particle's share of that of both.
   for (let slot = world.begin[particle]; slot < world.begin[particle + 1] && world.list[slot] <= e; ++slot) {
     const collision = world.list[slot];
     if (world.event[collision] !== MICROSCOPE.merge) continue;

@@ -136,10 +136,10 @@ function microscopeGapAt(camera, [tau, xi]) {
       if (line.from[0] <= tau && line.to[0] >= tau)
         consider(line.particle, microscopeAlong(chart, line, tau) - view.V * tau);
   } else {
-    const x0 = e < 0 ? world.x0[view.anchor.a] : world.x[e], t = world.time[Math.max(0, e)] + tau;
+    const { t, x: x0 } = microscopeOrigin(world, view.anchor);
     for (let particle = 0; particle < world.particles; ++particle) {
-      const collided = world.begin[particle + 1] > world.begin[particle];
-      if (!world.keepsOrder && collided && microscopeGoneAt(world, particle) < t) continue;
+      const merger = microscopeMerger(world, particle);
+      if (merger >= 0 && world.time[merger] < t + tau) continue;
       consider(particle, microscopeState(world, particle, collision, since).x - x0 - (view.lab + view.V) * tau);
     }
   }

@@ -24,8 +24,8 @@ function microscopeRaster(world, view, width, height, value, range, ink, budget,
   const lastColumn = Math.min(width - 1, Math.floor((world.end - begins) / perColumn));
   for (let particle = lowest; particle <= highest; particle += step) {
     const t1 = begins + firstColumn * perColumn, none = begin[particle], end = begin[particle + 1];
+    const merger = microscopeMerger(world, particle), gone = merger < 0 ? Infinity : time[merger];
     let slot = microscopeFirst(none, end, k => slotTime[k] <= t1), before = NaN;
-    const gone = world.keepsOrder || end === none ? Infinity : microscopeGoneAt(world, particle);
     for (let column = firstColumn; column <= lastColumn; ++column) {
       const t = begins + column * perColumn;
       // Doubling the steps finds the next collision quickly even with many per column.
@@ -106,13 +106,6 @@ function microscopeShown({ count, tint }) {
 // The first collision after a time.
 function microscopeFirstAfter(time, t) {
   return microscopeFirst(0, time.length, k => time[k] <= t);
-}
-
-// The time at which a particle merges into another one; infinite if it does not.
-function microscopeGoneAt(world, particle) {
-  const last = world.list[world.begin[particle + 1] - 1];
-  const gone = world.event[last] === MICROSCOPE.merge && microscopeGone(world, last) === particle;
-  return gone ? world.time[last] : Infinity;
 }
 
 // The particles that are visible. While they keep their order some columns suffice, else all are needed.

@@ -4,8 +4,8 @@ import numpy as np
 
 from .style import BLUE, ORANGE, note
 
-PANELS = (("density", "density $n$ ($1/l$)"), ("velocity", "mean velocity\n$u$ ($l/t$)"),
-          ("temperature", "temperature\n$T$ ($m\\,l^2/t^2$)"), ("heat_current", "heat current\n$J$ ($m\\,l^2/t^3$)"))
+PANELS = {"density": "density $n$ ($1/l$)", "velocity": "mean velocity\n$u$ ($l/t$)",
+          "temperature": "temperature\n$T$ ($m\\,l^2/t^2$)", "heat_current": "heat current\n$J$ ($m\\,l^2/t^3$)"}
 
 
 def pictures(result, _theory, _units):
@@ -43,11 +43,9 @@ def exact_current(result):
 def draw(result, panels):
     table = result.averages
     x = np.asarray(table["x"])
-    axes = panels.stacked(len(PANELS), height=1.9, sharex=True)
-    for ax, (name, label) in zip(axes, PANELS):
+    axes = panels.stacked(*PANELS.values(), x="position $x$ ($l$)", height=1.9)
+    for ax, name in zip(axes, PANELS):
         draw_points(ax, x, table, name, color=BLUE)
-        ax.set_ylabel(label)
     if (current := exact_current(result)) is not None:
         axes[-1].axhline(current, color=ORANGE, lw=1, ls="--", label=f"exact, {current:.4g}")
     note(axes[0], f"averages over $t={table['from']:.5g}$ to ${table['until']:.5g}$, bars: standard errors")
-    axes[-1].set_xlabel("position $x$ ($l$)")

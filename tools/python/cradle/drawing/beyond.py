@@ -7,6 +7,7 @@ from .style import BLUE, GREY, ORANGE, distinct, plt, shaded, shades
 MANY = 20         # snapshots that make a picture in space and time
 PATHS = 80        # of particles in it
 NARROW = 1e-2     # of the spacing: a core is there once half of the mass is in less
+EXCESS = r"$(E-E_\mathrm{sticky})\,/\,E_0$"
 ARRIVING = 0.97   # rows are taken to last for this share of the time at which the sticky gas has all
 SETTLED = 100     # units of time after which rates are averaged
 
@@ -95,7 +96,6 @@ def draw_excess(ax, result, since, units, colour, label=None, line="-"):
         ax.fill_between(time, excess(result, "min")[late], excess(result, "max")[late], color=colour, alpha=0.2, lw=0)
     ax.set_yscale("symlog", linthresh=1.000001e-5)  # of 1e-5 the logarithm is rounded down, to ticks at 1e-6
     ax.axhline(0, color=GREY, lw=0.8, zorder=0)
-    ax.set_ylabel(r"$(E-E_\mathrm{sticky})\,/\,E_0$")
 
 
 def positive(ax, time, values, **how):
@@ -112,7 +112,8 @@ def draw_run(result, units, panels):
     series, scale = result.means, slowest(result)
     late = series["time"] >= onset(result)
     time = series["time"][late] / units.t
-    axes = panels.stacked(4, width=5.8, height=2.1, sharex=True)
+    axes = panels.stacked(EXCESS, "core", units.label("core", r"core$\,/\,l$"), units.rate_label(),
+                          x=units.time_label(), width=5.8, height=2.1)
     draw_excess(axes[0], result, onset(result), units, BLUE)
     positive(axes[1], time, series["core_velocity_range"][late] / (scale or units.v), color=BLUE,
              label="velocity range" + (rf" / {scale:.4g}" if scale else ""))
@@ -125,9 +126,6 @@ def draw_run(result, units, panels):
     shown = middle >= onset(result)
     for values, colour, label in ((elastic, ORANGE, "elastic"), (every - elastic, BLUE, "dissipative")):
         positive(axes[3], middle[shown] / units.t, values[shown] * units.t, color=colour, label=label)
-    axes[1].set_ylabel("core")
-    axes[2].set_ylabel(units.label("core", r"core$\,/\,l$"))
-    axes[3].set(ylabel=units.rate_label(), xlabel=units.time_label())
 
 
 def core_of(snapshot):
@@ -178,7 +176,9 @@ def draw_spacetime(snapshots, units, panels):
 # ---- a sweep
 
 def draw_points(points, since, units, panels):
-    axes = panels.stacked(3, width=7.2, height=2.7, sharex=True)
+    length = "length with half of the mass"
+    axes = panels.stacked(EXCESS, "velocity range\n/ cut-off or merging speed",
+                          units.label(length, length + r"$\,/\,l$"), x=units.time_label(), width=7.2, height=2.7)
     replaced = [p for p in points if p.word("run", "collapse") in ("merge", "contact-time")]
     others = [p for p in points if p not in replaced]
     how = [(p, colour, "-") for p, colour in zip(others, shades(len(others)))]
@@ -192,9 +192,6 @@ def draw_points(points, since, units, panels):
         if slowest(point):
             positive(axes[1], time, point.means["core_velocity_range"][late] / slowest(point), color=colour, ls=line)
         positive(axes[2], time, point.means["core_width"][late] / units.x, color=colour, ls=line)
-    axes[1].set_ylabel("velocity range\n/ cut-off or merging speed")
-    length = "length with half of the mass"
-    axes[2].set(ylabel=units.label(length, length + r"$\,/\,l$"), xlabel=units.time_label())
     axes[0].legend(loc="upper left", bbox_to_anchor=(1.01, 1))
 
 

@@ -55,9 +55,8 @@ def draw_clusters(result, units, panels):
     force = result.table("force")
     tracks, broken = followed(result.means["heaviest"])
     time = result.means["time"] / units.t
-    position, velocity = panels.stacked(2, width=6.0, height=3.0, sharex=True)
-    position.set_ylabel(units.position_label())
-    velocity.set(ylabel=units.velocity_label(), xlabel=units.time_label())
+    position, velocity = panels.stacked(units.position_label(), units.velocity_label(), x=units.time_label(),
+                                        width=6.0, height=3.0)
     for ax, values in ((position, tracks["x"] / units.x), (velocity, tracks["v"] / units.v)):
         draw_tracks(ax, time, values, broken, 0.9)
         bound = 1.15 * largest(values, 0.02)  # the first swings are fast and would hide all others
@@ -134,18 +133,16 @@ def draw_scaling(result, units, panels):
     heaviest, time = result.means["heaviest"], result.means["time"] / units.t
     x, v = heaviest["x"], heaviest["v"]
     begin = min(result.table("meetings").get("time", ()), default=0.0) / units.t  # before, each swings on its side
-    axes = panels.stacked(2 + bool(result.masses), height=2.3)
-    rows = ((np.abs(x[:, 1] - x[:, 0]) / units.x, 1 / 3, units.label("separation", r"separation$\,/\,l$"), BLUE),
-            (np.abs(v[:, 1] - v[:, 0]) / units.v, -1 / 3, units.label("relative speed", r"relative speed$\,/\,2u_0$"),
-             ORANGE))
-    for ax, (values, theory, label, colour) in zip(axes, rows):
-        draw_envelope(ax, time, values, theory, colour, begin)
-        ax.set(xlabel=units.time_label(), ylabel=label)
-    if result.masses:
-        draw_masses(axes[2], result.masses, units)
+    apart, passing, *third = panels.stacked(
+        units.label("separation", r"separation$\,/\,l$"), units.label("relative speed", r"relative speed$\,/\,2u_0$"),
+        *[""] * bool(result.masses), height=2.3)
+    draw_envelope(apart, time, np.abs(x[:, 1] - x[:, 0]) / units.x, 1 / 3, BLUE, begin, units)
+    draw_envelope(passing, time, np.abs(v[:, 1] - v[:, 0]) / units.v, -1 / 3, ORANGE, begin, units)
+    for ax in third:
+        draw_masses(ax, result.masses, units)
 
 
-def draw_envelope(ax, time, values, theory, colour, begin):
+def draw_envelope(ax, time, values, theory, colour, begin, units):
     time, values, centre, top, late, fit = envelope(time, values, begin)
     shown = time >= 10 ** (np.log10(time[-1]) - DECADES)
     ax.loglog(time[shown], values[shown], ".", ms=1.5, mew=0, color=GREY, rasterized=True, label="samples")
@@ -156,7 +153,7 @@ def draw_envelope(ax, time, values, theory, colour, begin):
         ax.plot(ends, np.exp(fit[1]) * ends ** fit[0], color="k", lw=1.2, label=f"fit, exponent {fit[0]:.3f}")
         middle = np.exp(np.log(top[late]).mean() - theory * np.log(centre[late]).mean())
         ax.plot(ends, middle * ends ** theory, "k--", lw=1, label=f"section VI, exponent {theory:.3f}")
-    ax.set_ylim(bottom=top.min() / 300)
+    ax.set(xlabel=units.time_label(), ylim=(top.min() / 300, None))
     ax.legend(loc="lower left", ncol=2)
 
 

@@ -53,7 +53,9 @@ def draw_cooling(result, theory, panels):
     later, time, energy, law = cooled(result)
     merging = result.law in ("sticky", "wet")
     applies = bool(np.isfinite(law).any())
-    axes = panels.stacked(1 + applies + merging, height=2.2, sharex=True)
+    axes = panels.stacked(r"energy per particle $E\,/\,N$", *["simulation / sticky law"] * applies,
+                          *["clusters per particle"] * merging, height=2.2,
+                          x=rf"time ($t$)   ($\tau=st/a$, $s={speed:.4g}$, $a={spacing:.4g}$)")
     axes[0].loglog(time, energy, color=BLUE, lw=1.6, label="simulation")
     if applies:
         axes[0].plot(time, law, "k--", label=r"sticky gas, $0.2214\,s^2\tau^{-2/3}$")
@@ -63,21 +65,17 @@ def draw_cooling(result, theory, panels):
         t, value = theory.curve(quantity)
         shown = (t >= time[0]) & (value / particles > 0.3 * energy.min())
         axes[0].plot(t[shown], value[shown] / particles, ":", color=colour, lw=1.6, label=theory.equation(quantity))
-    axes[0].set_ylabel(r"energy per particle $E\,/\,N$")
     axes[0].legend(loc="lower left")
     if merging:
         axes[-1].loglog(time, 1 - series["merges"][later] / particles, color=BLUE, lw=1.6, label="simulation")
         if applies:
             axes[-1].plot(time, CLUSTERS / ENERGY * law / speed ** 2, "k--", label=r"sticky gas, $1.328\,\tau^{-2/3}$")
-        axes[-1].set_ylabel(r"clusters per particle")
         axes[-1].legend(loc="lower left")
-    axes[-1].set_xlabel(rf"time ($t$)   ($\tau=st/a$, $s={speed:.4g}$, $a={spacing:.4g}$)")
 
 
 def draw_ratio(ax, time, ratio):
     ax.semilogx(time, ratio, color=BLUE, lw=1.6)
     ax.axhline(1, color="k", ls="--")
-    ax.set_ylabel("simulation / sticky law")
     if np.nanmax(ratio) > 10:
         ax.set_yscale("log")
     else:
@@ -87,9 +85,10 @@ def draw_ratio(ax, time, ratio):
 def draw_field(result, panels):
     """Velocity against position on a part of the ring: larger clusters are heavier, velocities form a saw-tooth."""
     snapshots = thinned(result.snapshots, 4)
-    axes = panels.stacked(len(snapshots), height=1.8, sharex=True)
     last = snapshots[-1]
     whole = len(last["x"]) <= STRETCH
+    axes = panels.stacked(*["velocity $v$ ($l/t$)"] * len(snapshots), height=1.8,
+                          x="position $x$ ($l$)" + ("" if whole else ", a stretch of the ring"))
     low, high = (-np.inf, np.inf) if whole else np.sort(last["x"])[[0, STRETCH - 1]]
     for ax, snapshot in zip(axes, snapshots):
         shown = (snapshot["x"] >= low) & (snapshot["x"] <= high)
@@ -97,7 +96,5 @@ def draw_field(result, panels):
         ax.scatter(snapshot["x"][shown], snapshot["v"][shown], s=np.clip(size, 4 if whole else 0.7, 60), color=BLUE,
                    alpha=0.7, lw=0, rasterized=True)
         ax.axhline(0, color=GREY, lw=0.6, zorder=0)
-        ax.set_ylabel("velocity $v$ ($l/t$)")
         note(ax, f"$t={power(snapshot['time'])}$, {shown.sum()} of {len(shown)}"
                  + (" clusters" if "merges" in result.means and result.means["merges"][-1] > 0 else " particles"))
-    axes[-1].set_xlabel("position $x$ ($l$)" + ("" if whole else ", a stretch of the ring"))

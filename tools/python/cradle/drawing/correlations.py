@@ -13,7 +13,7 @@ from .averages import draw_points
 from .cooling import ring_of
 from .style import BLUE, ORANGE, note
 
-PANELS = (("msd", r"mean-square displacement ($l^2$)"), ("vacf", r"$\langle v(0)\,v(t)\rangle$ ($l^2/t^2$)"))
+PANELS = {"msd": "mean-square displacement ($l^2$)", "vacf": r"$\langle v(0)\,v(t)\rangle$ ($l^2/t^2$)"}
 
 
 def pictures(result, _theory, _units):
@@ -64,11 +64,11 @@ def exact(result, lags):
 def draw(result, panels):
     table = result.correlations
     lag = np.asarray(table["lag"])
-    axes = panels.stacked(len(PANELS), height=2.6, sharex=True)
+    axes = panels.stacked(*PANELS.values(), x="time between the two states ($t$)", height=2.6)
     shown = lag > 0
-    for ax, (name, label) in zip(axes, PANELS):
+    for ax, name in zip(axes, PANELS):
         draw_points(ax, lag, table, name, shown, color=BLUE)
-        ax.set(xscale="log", ylabel=label)
+        ax.set_xscale("log")
     axes[0].set_yscale("log")
     axes[1].axhline(0, color="0.6", lw=0.7)
     if shown.any():
@@ -77,4 +77,3 @@ def draw(result, panels):
             ax.plot(times, curve, "--", color=ORANGE, lw=1, label="exact")
             ax.legend()
     note(axes[0], f"tagged particles, $t={table['from']:.5g}$ to ${table['until']:.5g}$, bars: standard errors")
-    axes[-1].set_xlabel("time between the two states ($t$)")

@@ -36,19 +36,19 @@ def first_hits(result):
 
 def draw(result, panels):
     particle, late = first_hits(result)
-    top, below = panels.stacked(2, height=2.6)
+    top, below = panels.stacked("particle on the right", r"$|t_n-(n-c_k)|\,u/a$", height=2.6)
     events = result.events
     some = events["right"] <= 24
     top.plot(events["time"][some], events["right"][some], "o", ms=3, color=GREY, label="collisions")
     shown = particle <= 24
     exactly = (particle - late)[shown] - float(delay_of(result))
     top.plot(exactly, particle[shown], "x", ms=5, color=ORANGE, label="closed form")
-    top.set(xlabel=r"time $t\,u/a$", ylabel="particle on the right")
+    top.set_xlabel(r"time $t\,u/a$")
     top.legend(loc="upper left")
     size = np.abs(late)
     precision = str(result.attributes.get("precision", ""))
     below.loglog(particle[size > 0], size[size > 0], "o", ms=2.5, color=BLUE, label=precision)
-    below.set(xlabel="heavy particle $n$", ylabel=r"$|t_n-(n-c_k)|\,u/a$")
+    below.set_xlabel("heavy particle $n$")
     note(below, f"k = {order(result)}; {(size == 0).sum()} of {len(size)} exact to the digits kept")
     below.legend(loc="upper left")
 

@@ -14,7 +14,8 @@ def pictures(result, theory, units):
 def draw_energy(result, theory, units, panels):
     series = result.means
     time = series["time"] / units.t
-    top, below = panels(2, sharex=True, figsize=(5.6, 5.4), height_ratios=(3, 2), letters=True)
+    top, below = panels.stacked(units.label(r"kinetic energy $E$ ($m\,l^2/t^2$)", units.energy_label()), "number",
+                                x=units.time_label(), height=2.5, margin=0.4, height_ratios=(3, 2))
     energy = series["energy"] / units.energy
     top.plot(time, energy, color=BLUE, lw=1.6, label="simulation")
     if "potential_energy" in series:
@@ -41,9 +42,7 @@ def draw_energy(result, theory, units, panels):
     top.set_ylim(min(0, 1.05 * least) if least < 0.6 * most else least - 0.1 * change, 1.05 * most if most > 0 else 1)
     if top.get_ylim()[0] > 0:
         top.set_ylim(top=most + 0.1 * change)
-    top.set_ylabel(units.label(r"kinetic energy $E$ ($m\,l^2/t^2$)", units.energy_label()))
     draw_collisions(below, series, time)
-    below.set_xlabel(units.time_label())
 
 
 def draw_collisions(ax, series, time):
@@ -56,4 +55,3 @@ def draw_collisions(ax, series, time):
     counts = series.get("collisions")
     if counts is not None and counts.max() > 1000:
         ax.set_yscale("log")
-    ax.set_ylabel("number")

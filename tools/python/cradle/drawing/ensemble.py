@@ -38,14 +38,16 @@ def draw_series(result, theory, units, panels):
     spreads = {name: of for name, of in result.table("ensemble/spread/series").items()
                if np.ndim(of.get("quantile_50", np.zeros((0, 2)))) == 1}
     shown += [(name, name.replace("_", " ")) for name in spreads if name not in dict(shown)]
-    axes = panels.stacked(len(shown), height=2.0, sharex=True)
+    axes = panels.stacked(*(units.energy_label() if name == "energy" else
+                            label + (units.label("", r"$\,/\,l$") if scale.get(name) == units.x else "")
+                            for name, label in shown), x=units.time_label(), height=2.0)
     replicas = len(result.replicas.get("index", ()))
     left = min((int(counts[-1]) for name, _ in shown if (counts := result.series[name].get("count")) is not None),
                default=replicas)
     note(axes[0], (f"{replicas} replicas; " if replicas else "") + (f"{left} at the end; " if left < replicas else "")
          + "bands: standard error, extremes" + ("; orange: spread" if spreads else ""))
-    axes[-1].set(xlabel=units.time_label(), xlim=(time[0], time[-1]))
-    for ax, (name, label) in zip(axes, shown):
+    axes[-1].set_xlim(time[0], time[-1])
+    for ax, (name, _) in zip(axes, shown):
         band(ax, time, result.series[name], scale.get(name, 1), BLUE, lw=1.2)
         if name in spreads:
             # Bins that all replicas share, or half of them, say nothing of what is between.
@@ -58,8 +60,6 @@ def draw_series(result, theory, units, panels):
                 ax.plot(time, np.transpose([low, high]), ":", color=ORANGE, lw=1, label=["90 % of them", None])
             else:
                 note(ax, "the bins are wider than the spread")
-        ax.set_ylabel(units.energy_label() if name == "energy" else
-                      label + (units.label("", r"$\,/\,l$") if scale.get(name) == units.x else ""))
     on_ring = result.word("initial", "type") == "ring"
     predicted = {"energy": ("energy_sticky", "sticky gas"), "front_right": ("front_position", "")}
     for ax, (name, _) in zip(axes, [] if on_ring else shown):
@@ -90,26 +90,26 @@ def show_cooling(axes, result, time):
 
 def draw_profiles(result, theory, units, panels):
     profiles = thinned(result.profiles, 6)
-    velocity, density = panels.stacked(2, width=6.4, height=2.7, sharex=True)
     name = "mass_density" if result.law in ("wet", "sticky") and "mass_density" in profiles[0] else "density"
+    velocity, density = panels.stacked(
+        units.mean_velocity_label(), ("mass " if name == "mass_density" else "") + units.density_label(),
+        x=units.position_label(), width=6.4, height=2.7)
     for profile, colour in shaded(profiles):
         x = profile["x"] / units.x
         band(velocity, x, profile["velocity"], units.v, colour, lw=1.1, label=units.at(profile["time"]))
         band(density, x, profile[name], 1 / units.x, colour, lw=1.1)
     draw_slope(velocity, profiles, theory, units)
-    velocity.set_ylabel(units.mean_velocity_label())
-    density.set(ylabel=("mass " if name == "mass_density" else "") + units.density_label(), ylim=(0, None),
-                xlabel=units.position_label())
+    density.set_ylim(0, None)
     beside(velocity)
 
 
 def draw_collapse(result, units, panels):
     times = result.replicas["collapse_time"] / units.t
     known = times[np.isfinite(times)]
-    (ax,) = panels.stacked(1, height=3.0)
+    (ax,) = panels.stacked("replicas", height=3.0,
+                           x=units.label(r"time of collapse $t_c$", r"time of collapse $t_c\,/\,(l/2u_0)$"))
     bins = np.histogram_bin_edges(known, min(50, max(5, int(np.sqrt(len(known)) * 1.5))))
     ax.hist(known, bins, color=BLUE, edgecolor="white", lw=0.4)
     ax.axvline(np.median(known), color=ORANGE, lw=1.2, label=f"median {np.median(known):.5g}")
     ax.axvline(known.mean(), color=GREY, lw=1.2, ls="--", label=f"mean {known.mean():.5g}")
-    ax.set(xlabel=units.label(r"time of collapse $t_c$", r"time of collapse $t_c\,/\,(l/2u_0)$"), ylabel="replicas")
     note(ax, f"{len(known)} of {len(times)} replicas")

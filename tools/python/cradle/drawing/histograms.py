@@ -35,7 +35,7 @@ def variance(result):
 
 
 def draw(result, names, panels):
-    axes = panels.stacked(len(names), height=2.2)
+    axes = panels.stacked(*["density"] * len(names), height=2.2)
     for ax, name in zip(axes, names):
         table = result.histograms[name]
         drawn, count, error = counted(table)
@@ -46,5 +46,5 @@ def draw(result, names, panels):
         ax.errorbar(x, count[shown] * scale, yerr=error[shown] * scale, fmt="o", ms=2.5, lw=0.8, color=BLUE)
         if name == "closing_speed" and (T := variance(result)) is not None:
             ax.plot(x, x / (2 * T) * np.exp(-x ** 2 / (4 * T)), "--", color=ORANGE, lw=1, label="equilibrium")
-        ax.set(xscale="log", yscale="log", xlabel=LABELS[name], ylabel="density")
+        ax.set(xscale="log", yscale="log", xlabel=LABELS[name])
     note(axes[0], f"counted at $t={table['from']:.5g}$ to ${table['until']:.5g}$")

@@ -32,7 +32,9 @@ def draw_particles(result, units, panels):
     """Paths; energy and collisions, at a collapse collisions alone; and how intervals (from events) or gaps shrink."""
     shrinking = {"interval", "closing_speed"} <= result.events.keys()
     gaps = not shrinking and len(result.snapshots) > 1 and len(result.snapshots[0]["x"]) > 1
-    axes = panels.stacked(2 + (shrinking or gaps))
+    left = time_to_collapse(result) if shrinking else None
+    third = ["interval, closing speed"] if shrinking else [units.label("gap", r"gap$\,/\,l$")] if gaps else []
+    axes = panels.stacked(units.position_label(), units.energy_label() if left is None else "collisions", *third)
     series, paths = result.means, {}
     if one_falls(result):
         weight = -result.setting("gravity", "acceleration") * float(result.scene["initial"].get("m", [1])[0])
@@ -44,17 +46,16 @@ def draw_particles(result, units, panels):
         path = parted(np.array(path), result.setting("initial", "length", 0.0) or np.inf)
         axes[0].plot(*(path / (units.t, units.x)).T, "o-" if len(path) <= MARKED else "-", ms=3,
                      color=colour, label=f"particle {particle}")
-    left = time_to_collapse(result) if shrinking else None
     for name, line in (("front_left", ":"), ("front_right", "--")):
         if name in series and not one_falls(result):
             axes[0].plot(series["time"] / units.t, series[name] / units.x, line, color="k", lw=0.8, zorder=0,
                          label="outermost" if line == ":" else None)
-    axes[0].set(xlabel=units.time_label(), ylabel=units.position_label())
+    for ax in axes:
+        ax.set_xlabel(units.time_label())
     if paths and len(paths) <= 8:
         axes[0].legend(ncol=2)
     if left is not None:  # the number of collisions is a straight line in the logarithm of the time that is left
         axes[1].plot(left / units.t, np.arange(1, len(left) + 1), ".", ms=3, color=BLUE)
-        axes[1].set_ylabel("collisions")
         towards_collapse(axes[1], units)
     elif series:
         time = series["time"] / units.t
@@ -66,7 +67,7 @@ def draw_particles(result, units, panels):
             total = (series["energy"] + series["potential_energy"]) / units.energy
             axes[1].plot(time, total, color=ORANGE, label="with that of gravity")
             least = min(total.min(), 0.0)
-        axes[1].set(ylabel=units.energy_label(), xlabel=units.time_label(), ylim=(least, None))
+        axes[1].set_ylim(least, None)
         if "collisions" in series:
             other = axes[1].twinx()
             other.plot(time, series["collisions"], color=RED, ls="--", drawstyle="steps-post")
@@ -77,8 +78,9 @@ def draw_particles(result, units, panels):
             value = result.events[name]
             axes[2].semilogy(count, np.where(value > 0, value, np.nan), mark, ms=3, color=colour,
                              label=name.replace("_", " "))
-        axes[2].set(xlabel="collision", ylabel="interval, closing speed")
-        if left is not None:
+        if left is None:
+            axes[2].set_xlabel("collision")
+        else:
             towards_collapse(axes[2], units)
     elif gaps:
         for pair in range(min(len(s["gap"]) for s in result.snapshots)):
@@ -86,7 +88,6 @@ def draw_particles(result, units, panels):
             points = np.array(points).reshape(-1, 2)
             axes[2].semilogy(*(points / (units.t, units.x)).T, "o-" if len(points) <= MARKED else "-", ms=3,
                              label=f"gap {pair}")
-        axes[2].set(xlabel=units.time_label(), ylabel=units.label("gap", r"gap$\,/\,l$"))
 
 
 def time_to_collapse(result):

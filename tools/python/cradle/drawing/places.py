@@ -36,12 +36,11 @@ def draw(result, group, name, along, xlabel, ylabel, scales, panels):
 def draw_points(result, group, name, along, xlabel, ylabel, scales, panels):
     points = [p for p in result.points if len(getattr(p, group))]
     times = thinned(getattr(points[0], group).times)
-    axes = panels.stacked(len(times), height=2.4, sharex=True)
+    axes = panels.stacked(*[ylabel] * len(times), x=xlabel, height=2.4)
     for ax, time in zip(axes, times):
         for point, colour, label in zip(points, shades(len(points)), distinct(map(label_of, points), points)):
             table = getattr(point, group).at(time, "nearest")
             ax.plot(table[along], mean_of(table[name]), color=colour, lw=1, label=label)
         ax.axhline(1, color=ORANGE, lw=1, ls="--")
-        ax.set(**scales, ylabel=ylabel, title=f"$t={time:.5g}$")
+        ax.set(**scales, title=f"$t={time:.5g}$")
     axes[0].legend(fontsize=7)
-    axes[-1].set_xlabel(xlabel)

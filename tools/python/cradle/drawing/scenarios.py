@@ -6,6 +6,7 @@ from .style import BLUE, GREY, RED, SKY, shaded, shades
 
 # Of core/observe/scenario.hpp.
 REGIMES = {1: ("apart", SKY), 2: ("through each other", BLUE), 3: ("stuck last", RED), 0: ("one cluster only", "0.8")}
+LOSS = r"$E_\mathrm{loss}$ ($m\,l^2/t^2$)"
 ENOUGH = 10  # replicas of a point of which shares are drawn
 
 
@@ -55,7 +56,8 @@ def mean(values):
 
 
 def draw_scenarios(result, panels):
-    axes = panels.stacked(4, height=2.1, sharex=True)
+    axes = panels.stacked("first meeting\nis a pass", "passing through\nat the end", "times stuck",
+                          "exponent of\nseparation", x=LOSS, height=2.1)
     groups = curves(result)
     for (size, points), colour, mark in zip(groups.items(), shades(len(groups)), "osD^v<>"):
         for ax, name, estimate in ((axes[0], "first_passed", lambda known: wilson(known.sum(), len(known))),
@@ -64,30 +66,29 @@ def draw_scenarios(result, panels):
             loss, value, low, high = estimated(points, name, estimate)
             ax.errorbar(loss, value, yerr=[value - low, high - value], fmt=mark + "-", ms=4, lw=0.9, capsize=2,
                         color=colour, label=f"perturbation {size:g} $l$")
-    axes[0].set(ylabel="first meeting\nis a pass", ylim=(-0.03, 1.03))
-    axes[1].set(ylabel="passing through\nat the end", ylim=(-0.03, 1.03))
+    for ax in axes[:2]:
+        ax.set_ylim(-0.03, 1.03)
     axes[2].set_yscale("symlog", linthresh=1)
-    axes[2].set(ylabel="times stuck", ylim=(0, None))
+    axes[2].set_ylim(0, None)
     axes[3].axhline(1 / 3, color=GREY, lw=0.8, zorder=0)
-    axes[3].set(ylabel="exponent of\nseparation", xscale="log", xlabel=r"$E_\mathrm{loss}$ ($m\,l^2/t^2$)")
+    axes[3].set_xscale("log")
     axes[0].set_title("95 % confidence", loc="right", fontsize=7)
 
 
 def draw_regimes(result, panels):
     """The outcomes of the replicas as shares, for each loss and size of perturbation."""
     groups = curves(result)
-    axes = panels.stacked(len(groups), height=1.9, sharex=True)
-    for ax, (size, points) in zip(axes, groups.items()):
+    axes = panels.stacked(*(f"perturbation {size:g} $l$" for size in groups), x=LOSS, height=1.9)
+    for ax, points in zip(axes, groups.values()):
         below = np.zeros(len(points))
         places = np.arange(len(points))
         for regime, (name, colour) in REGIMES.items():
             share = np.array([np.mean(point.replicas["regime"] == regime) for point in points])
             ax.bar(places, share, bottom=below, width=0.85, color=colour, label=name)
             below += share
-        ax.set(ylim=(0, 1), ylabel=f"perturbation {size:g} $l$")
+        ax.set_ylim(0, 1)
         losses = [f"{point.setting('law', 'loss'):.2g}" for point in points]
         ax.set_xticks(places, losses, fontsize=7, rotation=90 if len(points) > 13 else 0)
-    axes[-1].set_xlabel(r"$E_\mathrm{loss}$ ($m\,l^2/t^2$)")
     axes[0].legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncol=4)
 
 

@@ -56,9 +56,10 @@ def draw_shock(result, theory, units, panels):
     common = [p for p in profiles if p["time"] in {s["time"] for s in snapshots}]
     profiles = thinned(common if len(common) > 1 else profiles, MOST)
     colour, name = times_of(snapshots + profiles, units)
-    axes = panels.stacked(bool(snapshots) + 2 * bool(profiles), width=6.4, height=2.5, margin=0.5, sharex=True)
-    axes[-1].set_xlabel(units.position_label())
     heavy = result.law == "wet" and all("mass_density" in p for p in profiles)
+    averages = units.mean_velocity_label(), ("mass " if heavy else "") + units.density_label()
+    axes = panels.stacked(*[units.velocity_label()] * bool(snapshots), *averages * bool(profiles),
+                          x=units.position_label(), width=6.4, height=2.5, margin=0.5)
     density = "mass_density" if heavy else "density"
     named = {group["time"] for group in snapshots}
     if snapshots:
@@ -76,8 +77,6 @@ def draw_shock(result, theory, units, panels):
             axes[1].plot(group["x"] / units.x, group[density] * units.x, drawstyle="steps-mid", lw=1.1,
                          color=colour[group["time"]])
         draw_slope(axes[0], profiles, theory, units)
-        axes[0].set_ylabel(units.mean_velocity_label())
-        axes[1].set_ylabel(("mass " if heavy else "") + units.density_label())
         beside(axes[0])
         filled = np.concatenate([p[density][p[density] > 0] for p in profiles])
         if len(filled) and filled.max() > 30 * np.median(filled):
@@ -104,7 +103,6 @@ def draw_velocities(ax, snapshots, theory, units, colour, name):
         for sign in (1, -1):
             ax.plot(sign * front[known] / units.x, sign * speed[known] / units.v, "k--", lw=1,
                     label="front, " + cited if sign > 0 else None)
-    ax.set_ylabel(units.velocity_label())
     legend = beside(ax)
     for handle in getattr(legend, "legend_handles", None) or legend.legendHandles:
         if handle.get_linestyle() == "None":

@@ -30,7 +30,8 @@ def draw_sticky(result, units, panels):
     (left, u_left), (right, u_right), (core, _) = rows_of(result)
     snapshots, profiles = thinned(result.snapshots, 5), thinned(result.mean_profiles, 5)
     colour, name = times_of(snapshots + profiles, units)
-    velocity, density, mass = panels.stacked(3, height=2.3)
+    velocity, density, mass = panels.stacked(
+        units.velocity_label(), units.label(r"density $\rho$", r"density $\rho\,/\,\rho_0$"), "", height=2.3)
     roots = np.sqrt([left, right])
     front = (roots[0] * u_left + roots[1] * u_right) / roots.sum()  # velocity of the peak, 0 for equal rows
     growth = roots[0] * roots[1] * (u_left - u_right)
@@ -75,10 +76,9 @@ def draw_sticky(result, units, panels):
                           (sign * 0.75 * span / units.x, 0.62 * u / units.v), arrowprops={"arrowstyle": "->", "lw": 1})
         velocity.text(sign * 0.6 * span / units.x, 0.5 * u / units.v, "row", ha="center",
                       va="top" if u > 0 else "bottom")
-    velocity.set(ylabel=units.velocity_label(), xlabel=units.position_label())
+    velocity.set_xlabel(units.position_label())
     velocity.legend(loc="upper right", ncol=2)
-    density.set(ylabel=units.label(r"density $\rho$", r"density $\rho\,/\,\rho_0$"), xlabel=units.position_label(),
-                ylim=(0, 1.15 * high), xlim=velocity.get_xlim())
+    density.set(xlabel=units.position_label(), ylim=(0, 1.15 * high), xlim=velocity.get_xlim())
     density.legend(loc="upper left")
     note(density, "arrows: delta peak, as high as it is heavy")
     if "cloud_mass" in result.means:

@@ -118,9 +118,13 @@ class Panels:
             return self.axes if rows * columns > 1 else self.axes[0]
         return axes
 
-    def stacked(self, count, width=5.6, height=2.4, margin=0.3, **options):
-        """A column of panels with their letters, as a list."""
-        self(count, figsize=(width, height * count + margin), letters=True, **options)
+    def stacked(self, *labels, x="", width=5.6, height=2.4, margin=0.3, **options):
+        """A column of panels with their letters and the labels of their y axes, as a list. x: of the axis that they
+        share; without it each has its own."""
+        self(len(labels), figsize=(width, height * len(labels) + margin), letters=True, sharex=bool(x), **options)
+        for ax, label in zip(self.axes, labels):
+            ax.set_ylabel(label)
+        self.axes[-1].set_xlabel(x)
         return list(self.axes)
 
     def add_legends(self):

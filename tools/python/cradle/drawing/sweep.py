@@ -80,7 +80,9 @@ def draw_cooling(result, panels):
     time = points[0].means["time"]
     asymptotic = sticky_law(points[0], time)
     applies = bool(np.isfinite(asymptotic).any())
-    top, *below = axes = panels.stacked(1 + (applies or reference is not None), height=2.9, sharex=True)
+    top, *below = panels.stacked(
+        r"energy per particle $E\,/\,N$", *[r"$E\,/\,E_{\mathrm{sticky}}$"] * (applies or reference is not None),
+        x="time ($t$)", height=2.9)
     for point, colour, label in zip(shown, [*shades(len(others)), "k"], labels):
         _, at, energy, law = cooled(point)
         line = "--" if point.law == "inelastic" else "-"
@@ -94,9 +96,6 @@ def draw_cooling(result, panels):
         top.plot(time, asymptotic, ":", color="k", lw=1.4, label=r"$0.2214\,s^2(st/a)^{-2/3}$")
     for ax in below:
         ax.axhline(1, color=GREY, lw=0.8, zorder=0)
-        ax.set_ylabel(r"$E\,/\,E_{\mathrm{sticky}}$")
-    top.set_ylabel(r"energy per particle $E\,/\,N$")
-    axes[-1].set_xlabel("time ($t$)")
     top.legend(loc="lower left")
 
 

@@ -20,7 +20,8 @@ def given_by(series):
 
 def draw(result, panels):
     series, snapshots = result.means, result.snapshots
-    axes = panels.stacked(3, height=2.2, sharex=True)
+    axes = panels.stacked("position $x$ ($l$)", "share of the energy\nthat one particle has", r"energy ($m\,l^2/t^2$)",
+                          x="time ($t$)", height=2.2)
     times = np.array([s["time"] for s in snapshots])
     places = np.array([np.quantile(s["x"], (0.1, 0.5, 0.9)) for s in snapshots])
     energies = [0.5 * s["m"] * s["v"] ** 2 for s in snapshots]
@@ -30,13 +31,12 @@ def draw(result, panels):
     axes[0].plot(times, places[:, 1], color=BLUE, lw=1.2, label="median")
     axes[0].plot(times, fastest, "o", color=ORANGE, ms=3 if len(times) <= MARKED else 1.5,
                  label="the particle with most energy")
-    axes[0].set_ylabel("position $x$ ($l$)")
     low, high = axes[0].get_ylim()
     axes[0].set_ylim(low - 0.2 * (high - low), high)  # room for the legend
     axes[0].legend(loc="lower left", ncol=3, fontsize=7)
     axes[1].plot(times, share, "o-" if len(times) <= MARKED else "-", color=ORANGE, ms=3, lw=0.8)
     axes[1].axhline(1 / len(snapshots[-1]["x"]), color=GREY, lw=0.8, ls="--", label="equal shares")
-    axes[1].set(ylabel="share of the energy\nthat one particle has", ylim=(0, min(1.05, 1.6 * np.nanmax(share))))
+    axes[1].set_ylim(0, min(1.05, 1.6 * np.nanmax(share)))
     axes[1].legend(fontsize=7)
     positive = series["energy"] > 0
     axes[2].semilogy(series["time"][positive], series["energy"][positive], color=BLUE, lw=0.8, label="energy")
@@ -44,5 +44,4 @@ def draw(result, panels):
     for sign, line, label in ((1, "-", "given by the walls"), (-1, "--", "taken by the walls")):
         if (there := sign * given > 0).any():
             axes[2].semilogy(series["time"][there], sign * given[there], line, color=ORANGE, lw=1.2, label=label)
-    axes[2].set(xlabel="time ($t$)", ylabel=r"energy ($m\,l^2/t^2$)")
     axes[2].legend(fontsize=7)

@@ -25,7 +25,9 @@ def draw_zone(result, units, panels):
     x = zone["x"] / units.x
     half = model_width(speed, loss, spacing) / 2 / units.x
     measured, error = zone["width"] / units.x, zone["width_error"] / units.x
-    velocity, density, mass = panels.stacked(3, height=2.1, sharex=True)
+    velocity, density, mass = panels.stacked(
+        units.velocity_label(), units.label("density $n$", r"density $n\,/\,n_0$"),
+        units.label(r"mass density $\rho$", r"mass density $\rho\,/\,\rho_0$"), x=units.position_label(), height=2.1)
     slow = 2 * np.sqrt(loss)
     formed = bool(np.isfinite(measured))  # u+ has fallen to u_crit within the bins; before there is nothing to model
     for sign, index, name, colour, line in ((1, "+", "right", BLUE, "-"), (-1, "-", "left", ORANGE, "--")):
@@ -55,10 +57,8 @@ def draw_zone(result, units, panels):
         velocity.set_ylim(1.05 * bottom, 2.55 * top)
         draw_width(velocity, measured, error, longer=measured / (1 - slow / speed) if slow < speed else np.nan,
                    model=2 * half, top=top)
-    velocity.set(yticks=[-speed / units.v, 0, speed / units.v], ylabel=units.velocity_label())
-    density.set(ylabel=units.label("density $n$", r"density $n\,/\,n_0$"), ylim=(0, None))
-    mass.set(ylabel=units.label(r"mass density $\rho$", r"mass density $\rho\,/\,\rho_0$"),
-             xlabel=units.position_label())
+    velocity.set_yticks([-speed / units.v, 0, speed / units.v])
+    density.set_ylim(0, None)
     beside(velocity), beside(density)
     note(velocity, f"average over $t={zone['from'] / units.t:.5g}$ to {units.at(zone['until'], name='')}, "
                    f"{zone['samples']} samples")

@@ -301,6 +301,14 @@ class InBrowser(unittest.TestCase):
                 wide, narrow = (before, after) if turned < 0 else (after, before)
                 self.assertLess(narrow[zoomed], 0.9 * wide[zoomed])
 
+    def test_zooming_beside_collisions_keeps_the_chart(self):
+        """The anchor, a collision in sight at first, is left behind; between it and the view are others."""
+        self.opened("beside", "cooling", {"initial.particles": 100, "run.until": 20})
+        for _ in range(30):
+            self.m("zoom(1.35, {x: 300, y: 200})")
+            self.assertTrue(self.m("camera().chart === null || cradleMicroscopeTest.camera().chart.xi.every(isFinite)"))
+        self.assertTrue(self.view()["exact"])
+
     def test_a_page_scrolls_past(self):
         x, y, _, _ = self.middle()
         before = self.view()

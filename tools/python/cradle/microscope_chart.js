@@ -49,7 +49,7 @@ function microscopeAround(world, anchor, reach, more) {
   return found;
 }
 
-// The last collision at or before tau after the anchor's, -1 for none, and its time.
+// The last collision at or before tau after the anchor's, -1 for none.
 function microscopeCollisionAt(world, e, tau) {
   const { n, time, interval, start } = world, t = e < 0 ? start : time[e];
   let k = e, at = 0;
@@ -91,8 +91,9 @@ function microscopeChart(world, anchor, from, to, low, high, drift) {
   to = Math.min(Math.max(to, from), ends);
   const deep = high - low < 1e-9 * Math.max(Math.abs(world.x0[0]), Math.abs(world.x0[world.particles - 1]));
   const most = 2 * (deep ? MICROSCOPE_CHART.deep : MICROSCOPE_CHART.collisions);
-  const first = microscopeCollisionAt(world, anchor.e, from) + 1;
-  const last = to < ends ? microscopeCollisionAt(world, anchor.e, to) : final;
+  // Also those between an anchor that is out of sight and the view: particles are followed from it.
+  const first = Math.min(microscopeCollisionAt(world, anchor.e, from), anchor.e) + 1;
+  const last = to < ends ? Math.max(microscopeCollisionAt(world, anchor.e, to), anchor.e) : final;
   const reach = Math.max(Math.abs(low), Math.abs(high)), more = [2, 2];
   for (let attempt = 0; attempt < 12; ++attempt) {
     const around = microscopeAround(world, anchor, reach, more);

@@ -32,25 +32,16 @@ function microscopeCamera(world) {
     camera.settle();
   };
 
-  // The span of space of the motion around collision e during a span of time.
+  // The span of space of the motion around collision e, of up to three more on either side, during a span of time.
   camera.natural = (e, T) => {
     if (e < 0) return T * limits.X / limits.T;
-    const pair = microscopeAnchor(world, { e, a: world.left[e] }), order = microscopeOrder(world, e);
     let X = 1.3 * T * Math.max(world.speed[e], Math.abs(world.after[e]));
-    for (const side of [1, -1]) {
-      let particle = side > 0 ? pair.b : pair.a, xi = 0, u = side > 0 ? pair.speedB : pair.speedA;
-      for (let k = 0; k < 3; ++k) {
-        const next = side > 0 ? order.next(particle) : order.previous(particle);
-        if (next < 0) break;
-        const [left, right] = side > 0 ? [particle, next] : [next, particle];
-        const { gap, w } = microscopeRelative(world, left, right, e);
-        xi += gap;
-        u -= side * w;
-        if (xi > X) break;
-        X = Math.max(X, 2.4 * xi + Math.abs(u) * T / 2);
-        particle = next;
+    const around = microscopeAround(world, { e, a: world.left[e] }, -1, [3, 3]);
+    for (const side of [around.filter(({ xi }) => xi > 0), around.filter(({ xi }) => xi < 0).reverse()])
+      for (const { xi, u } of side) {
+        if (Math.abs(xi) > X) break;
+        X = Math.max(X, 2.4 * Math.abs(xi) + Math.abs(u) * T / 2);
       }
-    }
     return Math.min(X, limits.X);
   };
 
@@ -104,7 +95,7 @@ function microscopeCamera(world) {
   // The collision that sets the span of space for the visible span of time: near a point, but not so near that it
   // belongs to the next scale of a collapse.
   camera.guide = ([tau, xi]) => {
-    const { view, chart } = camera, found = !chart ? camera.nearestInPositions() : camera.least((t, x) => {
+    const { view, chart } = camera, found = !chart ? camera.nearestToMiddle() : camera.least((t, x) => {
       const apart = Math.abs(t - tau) / view.T;
       return Math.hypot(apart, (x - xi) / view.X) + (apart < 0.1 ? 10 : 0);
     });
@@ -120,39 +111,42 @@ function microscopeCamera(world) {
   // Makes a new chart if this one no longer suits; moves an anchor that is out of sight to the collision in the middle.
   camera.settle = () => {
     camera.chartFor();
-    const { view, chart } = camera;
+    const { view } = camera;
     if (Math.abs(view.tau) < 0.75 * view.T && Math.abs(view.xi) < 0.75 * view.X) return;
-    const to = chart ? camera.nearest(view.tau, view.xi, view.T, view.X) : camera.nearestInPositions();
+    const to = camera.nearestToMiddle();
     if (!to || to.e === view.anchor.e || to.distance >= 0.98 * Math.hypot(view.tau / view.T, view.xi / view.X)) return;
     camera.reanchor(to);
   };
 
-  // {e, tau, xi, distance} of the collision of the chart with the least cost(tau, xi in the view's frame, e), or null.
+  // The collisions of the chart; without one, in positions, those around the middle of the view.
+  camera.collisions = () => {
+    if (camera.chart) return camera.chart;
+    const { anchor, tau: ahead, lab } = camera.view, { t, x } = microscopeOrigin(world, anchor);
+    const middle = microscopeFirstAfter(world.time, t + ahead), begin = Math.max(0, middle - 3000);
+    const collisions = Int32Array.from(world.time.slice(begin, middle + 3000), (_, i) => begin + i);
+    const tau = Float64Array.from(collisions, k => microscopeBetween(world, anchor.e, k));
+    return { collisions, tau, xi: tau.map((after, i) => world.x[collisions[i]] - x - lab * after) };
+  };
+  // {e, tau, xi, distance} of the one with the least cost(tau, xi in the view's frame, e); null if none is finite.
   camera.least = cost => {
-    const { chart: { collisions, tau, xi }, view: { V } } = camera;
-    const { best, least } = microscopeLeast(0, collisions.length, i => cost(tau[i], xi[i] - V * tau[i], collisions[i]));
-    return best < 0 ? null : { e: collisions[best], tau: tau[best], xi: xi[best], distance: least };
+    const { collisions, tau, xi } = camera.collisions(), { V } = camera.view;
+    let best = null, least = Infinity;
+    collisions.forEach((e, i) => {
+      const distance = cost(tau[i], xi[i] - V * tau[i], e);
+      if (distance < least) [best, least] = [{ e, tau: tau[i], xi: xi[i], distance }, distance];
+    });
+    return best;
   };
   // The one nearest to a point, in spans of time and space.
   camera.nearest = (tau, xi, spanTau, spanXi) =>
     camera.least((t, x) => Math.hypot((t - tau) / spanTau, (x - xi) / spanXi));
+  camera.nearestToMiddle = () => camera.nearest(camera.view.tau, camera.view.xi, camera.view.T, camera.view.X);
   // The deepest collision near a point, within given parts of the picture. It stays in place on zooming in, so that the
   // wheel over the tip of a collapse follows it.
   camera.deepest = ([tau, xi], partOfT, partOfX) => {
     const { T, X } = camera.view;
     return camera.least((t, x, e) =>
       Math.abs(t - tau) > partOfT * T || Math.abs(x - xi) > partOfX * X ? Infinity : world.depth[e]);
-  };
-  camera.nearestInPositions = () => {
-    const { view } = camera, { e } = view.anchor, { t: t0, x: x0 } = microscopeOrigin(world, view.anchor);
-    const middle = microscopeFirstAfter(world.time, t0 + view.tau);
-    const after = k => e < 0 ? world.time[k] - t0 : microscopeBetween(world, e, k);
-    const beside = (k, tau) => world.x[k] - x0 - view.lab * tau;
-    const { best, least } = microscopeLeast(Math.max(0, middle - 3000), Math.min(world.n, middle + 3000), k => {
-      const tau = after(k);
-      return Math.hypot((tau - view.tau) / view.T, (beside(k, tau) - view.V * tau - view.xi) / view.X);
-    });
-    return best < 0 ? null : { e: best, tau: after(best), xi: beside(best, after(best)), distance: least };
   };
 
   // Keeps the picture but makes another collision, at (tau, xi), the anchor.

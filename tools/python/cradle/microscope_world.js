@@ -155,16 +155,6 @@ function microscopeFirst(low, high, before) {
   return low;
 }
 
-// The first of low .. high - 1 with the least cost, and that cost: {best, least}; best is -1 if none is finite.
-function microscopeLeast(low, high, cost) {
-  let best = -1, least = Infinity;
-  for (let i = low; i < high; ++i) {
-    const found = cost(i);
-    if (found < least) [best, least] = [i, found];
-  }
-  return { best, least };
-}
-
 // The slot of the first collision of a particle after collision e.
 function microscopeSlotAfter({ begin, list }, particle, e) {
   return microscopeFirst(begin[particle], begin[particle + 1], slot => list[slot] <= e);

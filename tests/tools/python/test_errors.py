@@ -158,7 +158,7 @@ class InProgress(small.Case):
                     self.assertEqual(result.outcome, "in progress")
                     self.assertLess(result.series.time[-1], 1e7)
                     page = cradle.report(result, "way.html")
-                    self.assertEqual(program.call(["plot", "way.h5.part"]).out.split()[0], "way.png")
+                    self.assertEqual(program.call(["plot", "way.h5.part"]).stdout.split()[0], "way.png")
                     break
             except cradle.Error as error:  # not there yet, or over
                 self.assertEqual(error.status, 4)

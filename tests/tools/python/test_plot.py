@@ -22,7 +22,7 @@ class Pictures(small.Case):
             self.assertLessEqual(set(cradle.plot.names(make())), set(cradle.plot.PICTURES))
             for extension in (".png", ".svg") if make is small.shock else (".svg",):
                 made = cradle.plot.save(make(), "ours" + extension)
-                printed = program.call(["plot", make(), "-o", "theirs" + extension, "--force"]).out.split()
+                printed = program.call(["plot", make(), "-o", "theirs" + extension, "--force"]).stdout.split()
                 self.assertEqual([name.replace("ours", "theirs") for name in made], printed)
                 for ours, theirs in zip(made, printed):
                     self.assertTrue(filecmp.cmp(ours, theirs, shallow=False), ours)

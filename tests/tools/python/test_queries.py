@@ -28,7 +28,7 @@ class Queries(small.Case):
         collapsed = cradle.check("fig2", set={"law.restitution": 0.99})
         self.assertIn("until inelastic collapse", repr(collapsed))
         self.assertAlmostEqual(collapsed.seconds, collapsed.collisions / 6e7, delta=0.1 * collapsed.seconds)
-        self.assertEqual(repr(cradle.check("fig2")) + "\n", program.call(["check", "fig2"]).out)
+        self.assertEqual(repr(cradle.check("fig2")) + "\n", program.call(["check", "fig2"]).stdout)
         self.refused(2, "law.restitution: out of range", cradle.check, "fig2", {"law.restitution": 2})
 
     def test_theory_is_a_table_of_what_is_printed(self):

@@ -151,7 +151,7 @@ class Reports(small.Case):
         for make in small.ALL:
             text = small.page(make)
             call = program.call(["report", make(), "-o", "again.html", "--force"])
-            self.assertEqual((call.out, call.messages), ("again.html\n", ""))
+            self.assertEqual((call.stdout, call.stderr), ("again.html\n", ""))
             self.assertEqual(read("again.html"), text, make.__name__)
 
     def test_say_how_to_run_it_again(self):
@@ -165,7 +165,7 @@ class Reports(small.Case):
             if "--point" not in words:
                 program.call([*words, "--quiet"], accepted=(DONE, COLLAPSE))
                 found = program.call(["diff", make(), "again.h5"], accepted=(DONE, DIFFERS))
-                self.assertEqual(found.status, DONE, f"{command}\n{found.out}")
+                self.assertEqual(found.returncode, DONE, f"{command}\n{found.stdout}")
                 os.remove("again.h5")
 
     def test_say_what_is_proved(self):
@@ -190,7 +190,7 @@ class Reports(small.Case):
         self.assertIn("&lt;script&gt;alert(1)", text)
 
     def test_citation_has_the_version(self):
-        printed, version = program.call(["cite"]).out, program.call(["--version"]).out.split()[1]
+        printed, version = program.call(["cite"]).stdout, program.call(["--version"]).stdout.split()[1]
         self.assertIn(f"version {version}:", printed)
         self.assertEqual(version, cradle.__version__)
         self.assertIn("10.1103/PhysRevE.75.031304", printed)

@@ -343,7 +343,7 @@ class Calls(small.Case):
         sim = shock()
         sim.advance(10)
         sim.save("said.checkpoint")
-        said = program.call(["info", "said.checkpoint"]).out
+        said = program.call(["info", "said.checkpoint"]).stdout
         self.assertIn('cradle.Simulation.load("said.checkpoint") in Python continues from it', said)
         self.assertRegex(said, "t = 10, [0-9]+ collisions")
         self.refused(4, "a checkpoint, not a result.*Simulation.load", cradle.open, "said.checkpoint")

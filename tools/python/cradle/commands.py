@@ -143,18 +143,18 @@ def settings(set: Settings) -> list[str]:
 
 def called(words: list[str], output: str, threads: int | None, progress: bool | Show | None) -> Result:
     with shown(progress) as show:
-        call = program.call(words + option("--threads", threads), (DONE, COLLAPSE, LOST), show)
-    said = in_python(call.messages.strip().removeprefix("cradle: ") or call.out.strip())
+        done = program.call(words + option("--threads", threads), (DONE, COLLAPSE, LOST), show)
+    said = in_python(done.stderr.strip().removeprefix("cradle: ") or done.stdout.strip())
     try:
         result = open(output)
     except Error:
-        if call.status == LOST:  # and nothing was written
+        if done.returncode == LOST:  # and nothing was written
             raise Error(said, LOST) from None
         raise
-    result.text, result.status = call.out + call.messages, call.status
-    if call.status == LOST and words[0] != "certify":
+    result.text, result.status = done.stdout + done.stderr, done.returncode
+    if done.returncode == LOST and words[0] != "certify":
         raise Error(said, LOST, result)
-    if call.messages:
+    if done.stderr:
         warnings.warn(said, RuntimeWarning, stacklevel=3 if words[0] == "resume" else 4)
     return result
 

@@ -125,7 +125,7 @@ def predictions(result: Result) -> str:
     from .commands import scene_file
     try:
         with scene_file(result) as (path, _):
-            return program.call(["theory", path, "--csv"]).out
+            return program.call(["theory", path, "--csv"]).stdout
     except Error as error:
         if error.status == BAD_FILE:
             warnings.warn(f"pictures are without predictions: {error}", stacklevel=3)

@@ -10,7 +10,6 @@ import subprocess
 import tempfile
 import threading
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 
 from .errors import BAD_FILE, BAD_INPUT, DONE, Error, in_python
 
@@ -33,16 +32,8 @@ def find() -> str:
                 "build it with tools/quickstart.sh, or set CRADLE_PROGRAM to it", BAD_FILE)
 
 
-@dataclass
-class Call:
-    """The outcome of a call: standard output, messages on standard error, exit status."""
-    out: str
-    messages: str
-    status: int
-
-
 def call(arguments: Sequence[str], accepted: Sequence[int] = (DONE,),
-         show: Callable[[float, str], None] | None = None) -> Call:
+         show: Callable[[float, str], None] | None = None) -> subprocess.CompletedProcess[str]:
     """Calls the program with these arguments.
 
     show: called some times a second with the finished share, 0 to 1, and a line of text.
@@ -80,7 +71,7 @@ def call(arguments: Sequence[str], accepted: Sequence[int] = (DONE,),
         out.seek(0), err.seek(0)
         printed, messages = (file.read().decode("utf-8", "replace") for file in (out, err))
     if status in accepted:
-        return Call(printed, messages, status)
+        return subprocess.CompletedProcess(command, status, printed, messages)
     said = ("\n" + messages.strip()).rpartition("\ncradle: ")[2]  # without what was noted before
     raise Error(in_python(said) or f"{' '.join(command[:2])} ended without a message (status {status}): "
                 "run it in a terminal to see more", status if status >= 0 else 128 - status)

@@ -32,8 +32,8 @@ def scenes(name: str) -> str: ...
 def scenes(name=None):
     """The titles of the bundled scenes by their names; with a name the text of that scene, which run() takes."""
     if name is not None:
-        return program.call(["scenes", name]).out
-    return dict(re.split(r"\s+", line, maxsplit=1) for line in program.call(["scenes"]).out.splitlines())
+        return program.call(["scenes", name]).stdout
+    return dict(re.split(r"\s+", line, maxsplit=1) for line in program.call(["scenes"]).stdout.splitlines())
 
 
 def new(path: str | os.PathLike = "shock.toml", scene: Scene | None = None) -> str:
@@ -83,7 +83,7 @@ def check(scene: Scene, set: Settings = None, *, seed: int | None = None) -> Che
     Raises Error, as run() would, for whatever is wrong with it.
     """
     with scene_file(scene) as (path, _):
-        return Check(program.call(["check", path, *settings(set), *option("--seed", seed)]).out)
+        return Check(program.call(["check", path, *settings(set), *option("--seed", seed)]).stdout)
 
 
 def theory(scene: Scene, set: Settings = None, *, seed: int | None = None) -> Table:
@@ -93,7 +93,7 @@ def theory(scene: Scene, set: Settings = None, *, seed: int | None = None) -> Ta
     corrected), "discrete" (the exact recursion) or "printed" (with the misprint). No rows: nothing is predicted.
     """
     with scene_file(scene) as (path, name):
-        out = program.call(["theory", path, "--csv", *settings(set), *option("--seed", seed)]).out
+        out = program.call(["theory", path, "--csv", *settings(set), *option("--seed", seed)]).stdout
     rows = list(csv.DictReader(io.StringIO(out)))
     memory = h5py.File(f"theory of {name}", "w", driver="core", backing_store=False, track_order=True)
     for column in ("quantity", "equation", "form"):
@@ -129,7 +129,7 @@ def diff(first: File, second: File, rtol: float = 0) -> Differences:
     rtol: numbers a and b with |a - b| <= rtol max(|a|, |b|) are the same.
     """
     words = ["diff", path_of(first), path_of(second), "--all", "--rtol", repr(float(rtol))]
-    return Differences(program.call(words, (DONE, DIFFERS)).out)
+    return Differences(program.call(words, (DONE, DIFFERS)).stdout)
 
 
 def export(result: File, folder: str | os.PathLike, force: bool = False) -> list[str]:
@@ -138,7 +138,7 @@ def export(result: File, folder: str | os.PathLike, force: bool = False) -> list
     force: True replaces what the folder holds, also what was exported from another result.
     """
     words = ["export", path_of(result), "--to", os.fspath(folder), *["--force"] * force]
-    return program.call(words).out.splitlines()
+    return program.call(words).stdout.splitlines()
 
 
 def path_of(result: File) -> str:

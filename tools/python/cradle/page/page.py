@@ -63,7 +63,7 @@ def beside(name: str) -> str:
 def of_program(words: list[str]) -> str:
     """The program's output; empty if there is no program."""
     try:
-        return program.call(words).out.strip()
+        return program.call(words).stdout.strip()
     except Error:
         return ""
 

@@ -9,21 +9,12 @@ const MICROSCOPE_CHART = { particles: 1500, collisions: 8000, deep: 60000 };
 // The anchor's two particles: {a, b, gap, speedA, speedB, lab}: right after it, in its frame, whose velocity is lab.
 function microscopeAnchor(world, anchor) {
   const { e } = anchor;
-  if (e < 0) {
-    const a = anchor.a, b = microscopeOrder(world, -1).next(a), { gap, w } = microscopeRelative(world, a, b, -1);
-    const ofB = world.mass0[b] / (world.mass0[a] + world.mass0[b]);
-    return { a, b, gap, speedA: w * ofB, speedB: -w * (1 - ofB), lab: world.v0[a] - w * ofB };
-  }
-  const passed = world.event[e] === MICROSCOPE.pass, merged = world.event[e] === MICROSCOPE.merge;
-  const from = world.left[e], to = world.right[e], ofTo = world.share[e];
-  const ofFrom = world.after[e] * ofTo, ofOther = -world.after[e] * (1 - ofTo);
-  const lab = world.velocity[world.slotLeft[e]] - ofFrom;
-  if (merged) {
-    const heir = microscopeOther(world, microscopeGone(world, e), e);
-    return { a: heir, b: heir, gap: 0, speedA: 0, speedB: 0, lab };
-  }
-  return passed ? { a: to, b: from, gap: 0, speedA: ofOther, speedB: ofFrom, lab }
-                : { a: from, b: to, gap: 0, speedA: ofFrom, speedB: ofOther, lab };
+  let [a, b] = e < 0 ? [anchor.a, microscopeOrder(world, e).next(anchor.a)] : [world.left[e], world.right[e]];
+  if (world.event[e] === MICROSCOPE.pass) [a, b] = [b, a];
+  if (world.event[e] === MICROSCOPE.merge) a = b = microscopeOther(world, microscopeGone(world, e), e);
+  const { gap, w } = a === b ? { gap: 0, w: 0 } : microscopeRelative(world, a, b, e);
+  const [ofA, ofB] = [a, b].map(particle => microscopeMass(world, particle, e)), speedA = w * ofB / (ofA + ofB);
+  return { a, b, gap, speedA, speedB: speedA - w, lab: microscopeState(world, a, e).v - speedA };
 }
 
 // The particles around an anchor, right after it: [{particle, xi, u}] from left to right, up to `reach` on either side
@@ -51,15 +42,7 @@ function microscopeAround(world, anchor, reach, more) {
 
 // The last collision at or before tau after the anchor's, -1 for none.
 function microscopeCollisionAt(world, e, tau) {
-  const { n, time, interval, start } = world, t = e < 0 ? start : time[e];
-  let k = e, at = 0;
-  if (Math.abs(tau) > 1e-6 * Math.max(Math.abs(t), Number.MIN_VALUE) || e < 0) {
-    const rest = e < 0 ? 0 : world.low[e];
-    return microscopeFirst(0, n, k => (time[k] - t) + (world.low[k] - rest) <= tau) - 1;
-  }
-  if (tau >= 0) while (k + 1 < n && at + interval[k + 1] <= tau) at += interval[++k];
-  else while (k >= 0 && at > tau) at -= interval[k--];
-  return k;
+  return microscopeFirst(0, world.n, k => microscopeBetween(world, e, k) <= tau) - 1;
 }
 
 // Times since the anchor's collision of collisions in rising order: sums of intervals if they are close.

@@ -14,9 +14,9 @@ def pictures(result, _theory, _units):
 
 
 def with_error(table, name):
-    """Values and standard errors of a quantity, of a run or of an ensemble."""
+    """Values and standard errors (None: not known) of a quantity, of a run or of an ensemble."""
     quantity = table[name]
-    return (quantity["mean"], quantity["sem"]) if "mean" in quantity else (quantity, table[name + "_sem"])
+    return (quantity["mean"], quantity["sem"]) if "mean" in quantity else (quantity, table.get(name + "_sem"))
 
 
 def draw_points(ax, x, table, name, shown=slice(None), **how):

@@ -3,7 +3,7 @@ number of particles, for each restitution of a sweep. Half of them collapse at a
 and Young's estimate and with the exact number of particles in free space, or at a wall, which is a mirror."""
 import numpy as np
 
-from .scenarios import wilson
+from .scenarios import critical_number, wilson
 from .style import shaded
 
 
@@ -38,10 +38,6 @@ def curves_of(result):
     return {eps: sorted(points) for eps, points in sorted(found.items())}
 
 
-def free(eps):
-    return 2 / (1 - 4 / np.pi * np.arctan(np.sqrt(eps)))
-
-
 def half(points):
     """N at which half of the replicas collapse, interpolated at the first crossing; NaN if there is none."""
     share = np.array([hits / count for _, hits, count in points])
@@ -68,7 +64,7 @@ def draw(curves, walled, panels):
     right.loglog(1 - eps, least, "v", ms=4, label="one replica")
     fine = np.geomspace((1 - eps).min() / 1.5, min((1 - eps).max() * 1.5, 0.95), 100)
     right.plot(fine, np.log(4 / fine) / fine, "k--", lw=1, label=r"$\ln(4/(1-r))/(1-r)$")
-    right.plot(fine, free(1 - fine) / (2 if walled else 1), "k:", lw=1,
+    right.plot(fine, critical_number(1 - fine) / (2 if walled else 1), "k:", lw=1,
                label="at a wall, exact" if walled else "free space, exact")
     right.set(xlabel=r"$1-r$", ylabel="particles $N_c$")
     right.legend(loc="lower left")

@@ -101,13 +101,18 @@ def collapsed(result):
     return [p for p in result.points if p.word("initial", "type") == "rows" and known_times(p).size >= ENOUGH]
 
 
+def critical_number(restitution):
+    """N_c: more particles than this collapse in free space."""
+    return 2 / (1 - 4 / np.pi * np.arctan(np.sqrt(restitution)))
+
+
 def draw_collapse(result, panels):
     """Distributions of t_c over replicas, in units of the time when N_c particles are engaged."""
     ax = panels(figsize=(5.2, 3.6))
     for point, colour in shaded(collapsed(result)):
         restitution, speed = point.setting("law", "restitution"), point.setting("initial", "speed", 0.5)
         spacing = point.setting("initial", "spacing", 1.0)
-        engaged = 2 / (1 - 4 / np.pi * np.arctan(np.sqrt(restitution))) * spacing / (2 * speed)
+        engaged = critical_number(restitution) * spacing / (2 * speed)
         times = known_times(point) / engaged
         ax.hist(times, bins=max(8, int(np.sqrt(len(times)) * 1.5)), density=True, histtype="step", lw=1.4, color=colour,
                 label=rf"$r={restitution:g}$: {times.mean():.4f} $\pm$ {times.std(ddof=1):.4f}, "

@@ -116,7 +116,7 @@ function microscopeFollow(world, anchor, around, from, to, first, last, most) {
   const follow = (particle, slot, now, place, u) => {
     const line = { particle, points: [], speeds: [] }, merger = microscopeMerger(world, particle);
     const known = world.valid ? world.valid[particle] : merger < 0 ? Infinity : microscopeBetween(world, e, merger);
-    // On (step 1) or back (-1) through the collisions that are not drawn yet: the point [tau, xi] up to which it is known.
+    // On (step 1) or back (-1) through collisions that are not drawn yet: the point [tau, xi] up to which it is known.
     const end = (slot, step) => {
       for (let t = now, x = place, speed = u;; slot += step) {
         const inside = slot >= begin[particle] && slot < begin[particle + 1], k = inside ? list[slot] : -1;

@@ -81,7 +81,7 @@ function microscopeMass(world, particle, e) {
   for (let slot = world.begin[particle]; slot < world.begin[particle + 1] && world.list[slot] <= e; ++slot) {
     const collision = world.list[slot];
     if (world.event[collision] !== MICROSCOPE.merge) continue;
-    mass /= world.left[collision] === particle ? 1 - world.share[collision] : world.share[collision];
+    mass /= (world.left[collision] === particle ? world.ofLeft : world.ofRight)[collision];
   }
   return mass;
 }

@@ -28,8 +28,8 @@ async function microscopeCollisions(data) {
   const [x0, v0, gap0, mass, left, right, interval, speed, event] = await Promise.all(names.map(open));
   const n = interval.length, particles = x0.length;
   const world = {
-    n, particles, x0, v0, gap0, mass0: mass || new Float64Array(particles).fill(1), left, interval, law: data.law,
-    first: data.first, ring: data.length, start: data.start, total: data.total, digits: data.digits, collapse: data.collapse, speed,
+    n, particles, x0, v0, gap0, mass0: mass, left, interval, law: data.law, first: data.first, ring: data.length,
+    start: data.start, total: data.total, digits: data.digits, collapse: data.collapse, speed,
     right: right || left.map(particle => particle + 1 === particles && data.length ? 0 : particle + 1),
     event: event || new Uint8Array(n), index: null, valid: null,
     w0: gap0.map((_, particle) => v0[particle] - v0[particle + 1 < particles ? particle + 1 : 0]),
@@ -55,8 +55,8 @@ async function microscopeSnapshot(data, snapshot) {
     valid[particle + 1] = due;
   }
   const none = () => new Float64Array(0), world = {
-    n: 0, particles, x0, v0, gap0: gap, w0: w, mass0: mass || new Float64Array(particles).fill(1),
-    left: new Uint32Array(0), right: new Uint32Array(0), ring: 0, interval: none(), speed: none(), event: new Uint8Array(0), law: data.law,
+    n: 0, particles, x0, v0, gap0: gap, w0: w, mass0: mass, left: new Uint32Array(0), right: new Uint32Array(0),
+    ring: 0, interval: none(), speed: none(), event: new Uint8Array(0), law: data.law,
     first: snapshot.first, index, valid, start: snapshot.time, total: 0, digits: 9, collapse: false,
   };
   microscopeReplay(world);
@@ -76,13 +76,15 @@ function microscopeReplay(world) {
   for (let particle = 0; particle < particles; ++particle) begin[particle + 1] += begin[particle];
   const fill = begin.slice(), slotLeft = new Int32Array(n), slotRight = new Int32Array(n);
   const time = new Float64Array(n), low = new Float64Array(n), x = new Float64Array(n), after = new Float64Array(n);
-  const share = new Float64Array(n), depth = new Float32Array(n), velocity = new Float64Array(2 * n);
+  const ofLeft = new Float64Array(n), ofRight = new Float64Array(n);  // shares of the two in their mass
+  const depth = new Float32Array(n), velocity = new Float64Array(2 * n);
   const slotTime = new Float64Array(2 * n), slotPlace = new Float64Array(2 * n);  // in one place, for quick pictures
   const lost = new Float32Array(n), turn = ring ? new Int16Array(n) : null;
+  world.mass0 ||= new Float64Array(particles).fill(1);
   const mass = world.mass0.slice(), v = world.v0.slice(), place = world.x0.slice();
   const since = new Float64Array(particles).fill(world.start), sinceLow = new Float64Array(particles);
-  Object.assign(world, { begin, list, slotLeft, slotRight, time, low, x, after, share, depth, velocity, slotTime,
-                         slotPlace, lost, turn,
+  Object.assign(world, { begin, list, slotLeft, slotRight, time, low, x, after, ofLeft, ofRight, depth, velocity,
+                         slotTime, slotPlace, lost, turn,
                          keepsOrder: law.type === "inelastic" && !event.includes(MICROSCOPE.merge) });
   let t = world.start, rest = 0;
   for (let e = 0; e < n; ++e) {
@@ -102,8 +104,9 @@ function microscopeReplay(world) {
       out = Math.sqrt(Math.max(0, (w - critical) * (w + critical)));
     }
     after[e] = out;  // velocity of the particle that came from the left, minus the other's
-    share[e] = mass[b] / total;  // of the right particle
-    lost[e] = microscopeLog(mass[a] * share[e] / 2 * (w - out)) + microscopeLog(w + out);
+    ofLeft[e] = mass[a] / total;
+    ofRight[e] = mass[b] / total;
+    lost[e] = microscopeLog(mass[a] * ofRight[e] / 2 * (w - out)) + microscopeLog(w + out);
     const flownLeft = (t - since[a]) + (rest - sinceLow[a]), flownRight = (t - since[b]) + (rest - sinceLow[b]);
     const fromLeft = place[a] + v[a] * flownLeft, fromRight = place[b] + v[b] * flownRight;
     const around = ring ? Math.round((fromRight - fromLeft) / ring) : 0;
@@ -167,12 +170,12 @@ function microscopeOrigin(world, { e, a }) {
 
 // The other particle of a collision, and the change of a particle's velocity in a collision.
 function microscopeOther(world, particle, e) { return world.left[e] === particle ? world.right[e] : world.left[e]; }
-function microscopeKick({ left, speed, after, share }, particle, e) {
-  return left[e] === particle ? (after[e] - speed[e]) * share[e] : (speed[e] - after[e]) * (1 - share[e]);
+function microscopeKick({ left, speed, after, ofLeft, ofRight }, particle, e) {
+  return left[e] === particle ? (after[e] - speed[e]) * ofRight[e] : (speed[e] - after[e]) * ofLeft[e];
 }
 // The particle that disappears in a merger: the lighter one or, of two equal ones, the right one.
 function microscopeGone(world, e) {
-  return world.share[e] > 0.5 ? world.left[e] : world.right[e];
+  return world.ofRight[e] > 0.5 ? world.left[e] : world.right[e];
 }
 // The collision in which a particle disappears; -1 if there is none.
 function microscopeMerger(world, particle) {

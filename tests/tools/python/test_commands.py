@@ -62,6 +62,16 @@ class Runs(small.Case):
             cradle.run("fig5", {"run.until": 5}, output="said.h5")
         self.assertEqual(caught.filename, __file__)
 
+    def test_a_run_without_a_known_end_says_so_while_it_runs(self):
+        def interrupt(share, text):
+            raise KeyboardInterrupt
+
+        with self.assertWarnsRegex(RuntimeWarning, "how many follow is not known") as caught:
+            with self.assertRaises(KeyboardInterrupt):
+                cradle.run("cooling", small.ENDLESS | {"law.restitution": 0.9, "law.cutoff": 1e-300},
+                           output="endless.h5", progress=interrupt)
+        self.assertEqual(caught.filename, __file__)
+
     def test_resume_goes_further(self):
         with cradle.run("fig2", set=small.SHOCK, output="further.h5") as result:
             collisions = result.series.collisions[-1]

@@ -142,8 +142,15 @@ def settings(set: Settings) -> list[str]:
 
 
 def called(words: list[str], output: str, threads: int | None, progress: bool | Show | None) -> Result:
+    warned, level = "", 3 if words[0] == "resume" else 4  # of the caller's line
+
+    def warn(messages: str) -> None:  # at once: a run may have no known end
+        nonlocal warned
+        warned += messages
+        warnings.warn(in_python(messages.strip()), RuntimeWarning, stacklevel=level + 2)
+
     with shown(progress) as show:
-        done = program.call(words + option("--threads", threads), (DONE, COLLAPSE, LOST), show)
+        done = program.call(words + option("--threads", threads), (DONE, COLLAPSE, LOST), show, warn)
     said = in_python(done.stderr.strip().removeprefix("cradle: ") or done.stdout.strip())
     try:
         result = open(output)
@@ -154,8 +161,8 @@ def called(words: list[str], output: str, threads: int | None, progress: bool | 
     result.text, result.status = done.stdout + done.stderr, done.returncode
     if done.returncode == LOST and words[0] != "certify":
         raise Error(said, LOST, result)
-    if done.stderr:
-        warnings.warn(said, RuntimeWarning, stacklevel=3 if words[0] == "resume" else 4)
+    if later := done.stderr.removeprefix(warned).strip():
+        warnings.warn(in_python(later), RuntimeWarning, stacklevel=level)
     return result
 
 

@@ -33,10 +33,12 @@ def find() -> str:
 
 
 def call(arguments: Sequence[str], accepted: Sequence[int] = (DONE,),
-         show: Callable[[float, str], None] | None = None) -> subprocess.CompletedProcess[str]:
+         show: Callable[[float, str], None] | None = None,
+         warn: Callable[[str], None] | None = None) -> subprocess.CompletedProcess[str]:
     """Calls the program with these arguments.
 
     show: called some times a second with the finished share, 0 to 1, and a line of text.
+    warn: called with the lines that the program writes to standard error while it computes.
     Raises Error with the program's message and status if the status is not among the accepted ones. Ctrl-C interrupts
     the program, which writes its checkpoint, and then the caller.
     """
@@ -51,10 +53,16 @@ def call(arguments: Sequence[str], accepted: Sequence[int] = (DONE,),
                 child = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=out, stderr=err,
                                          start_new_session=True, pass_fds=[theirs.fileno()], env=environment)
             theirs.close()
-            if show:
-                with ours.makefile(encoding="utf-8", errors="replace") as lines:
-                    for line in lines:
-                        share, text = line.rstrip("\n").split("\t", 1)
+            read = 0
+            with ours.makefile(encoding="utf-8", errors="replace") as lines:
+                for line in lines:
+                    messages = os.pread(err.fileno(), 1 << 16, read)
+                    messages = messages[:messages.rfind(b"\n") + 1]
+                    read += len(messages)
+                    if warn and messages:
+                        warn(messages.decode("utf-8", "replace"))
+                    share, text = line.rstrip("\n").split("\t", 1)
+                    if show:
                         show(float(share), text)
             status = child.wait()
         except BaseException as error:  # Ctrl-C, first of all

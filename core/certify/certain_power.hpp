@@ -1,6 +1,6 @@
 #pragma once
 // exp(-y) and y exp(-y), y = x^s, of numbers with enclosures: what the restitution of the closing speed is made of
-// (certain_law.hpp). It shares no code with the engine's own functions (laws/elementary.hpp).
+// (certain_law.hpp). It shares no code with the engine's own functions (base/elementary.hpp).
 //
 //   exp(-y)   in the middle of y, h = y 2^-k <= 1/8: Taylor's series, whose terms alternate and fall, so that what is
 //             left out is less than the first term left out; then k squares. Elsewhere in y, up to r away, it differs

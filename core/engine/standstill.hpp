@@ -19,7 +19,11 @@ template <Real T> struct Standstill {
   // `threshold`: the law has one, below which collisions lose less and less, or nothing. `followed`: by what factor
   // gaps shrink until the run stops, at least 1.
   explicit Standstill(const T& start, bool threshold = false, const T& followed = T(1))
-      : time(start), threshold_(threshold), times_(1 + binary_exponent(followed) / 16384) {}
+      : time(start), threshold_(threshold) {
+    T power(2);
+    for (int squares = 0; squares < 14; ++squares) power *= power;  // 2^16384, infinite in types of a smaller range
+    for (T next = power; next < followed; next *= power) ++times_;
+  }
 
   T time;                             // local, at the last review
   T elapsed{0};                       // since the start, at the last advance of time
@@ -46,18 +50,8 @@ template <Real T> struct Standstill {
   }
 
  private:
-  static std::uint64_t binary_exponent(const T& x) {
-    if constexpr (WiderRange<T>) {
-      long exponent = 0;
-      split(x, exponent);
-      return exponent > 0 ? static_cast<std::uint64_t>(exponent) : 0;
-    } else {
-      return 0;  // the range has less than 16384 binary exponents
-    }
-  }
-
   bool threshold_;
-  std::uint64_t times_;
+  std::uint64_t times_ = 1;  // and one more for each power of 2^16384 below `followed`
 };
 
 }  // namespace cradle

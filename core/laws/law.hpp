@@ -268,7 +268,7 @@ template <Real T> class Wet {
 
  private:
   T loss_, twice_loss_;
-  T below_, above_;  // w_c times 0.999 and 1.001
+  T below_, above_;  // 2 E_loss times 1 - 1/1024 and 1 + 1/1024: between them mu w^2 needs the root
 };
 
 }  // namespace cradle

@@ -117,6 +117,11 @@ TEST(Standstill, CollisionsAtOneTimeHaveABound) {
   EXPECT_EQ(collisions_until_it_ends(3), 1U + (1U << 20) + 4096U * 9U + 1U);
   EXPECT_EQ(collisions_until_it_ends(1000), 0U) << "many particles may have billions";
   EXPECT_EQ(collisions_until_it_ends(2, 1e300), collisions_until_it_ends(2)) << "also on the way to a small gap";
+  Standstill<Wide> far(Wide(0), false, ldexp(Wide(1), 40000));
+  const std::uint64_t bound = 3 * ((1U << 20) + 4096U * 4U);
+  EXPECT_FALSE(far.at(Wide(1), Wide(1), 0, 2));
+  EXPECT_FALSE(far.at(Wide(2), Wide(1), bound, 2));
+  EXPECT_TRUE(far.at(Wide(3), Wide(1), bound + 1, 2)) << "more on the way to a gap 2^40000 times smaller";
 }
 
 TEST(Standstill, IsOverWhereTheTimeSinceTheStartAdvances) {

@@ -10,7 +10,6 @@
 #pragma once
 
 #include <cmath>
-#include <cstdint>
 #include <optional>
 
 #include "cradle/core/base/real.hpp"
@@ -67,45 +66,8 @@ inline double cushion_particles(double restitution) {
   return log(4 / (1 - restitution)) / (1 - restitution);
 }
 
-/// Where a collapse stands just after collision j = `collision`, counted from 0.
-template <class T> struct CollapseCollision {
-  std::uint64_t collision;
-  T time;
-  T closing_speed;  ///< p_j, before the collision
-  T other_gap;      ///< g_j
-};
-
-/// The collisions of a collapse one after the other, from plain arithmetic: closing speeds by the recursion, gaps by
-/// the invariant. Times lose their last digits as the collisions crowd; the rest and `interval` do not.
-template <class T> class CollapseSequence {
- public:
-  /// At time `t0` (collision 0) gaps closing at `p0` touch; others are `g0` wide and closed at `other_speed` before.
-  CollapseSequence(const T& restitution, const T& coupling, const T& t0, const T& p0, const T& g0, const T& other_speed)
-      : eps_(restitution), coupling_(coupling), now_{0, t0, p0, g0}, next_speed_(other_speed + coupling * p0) {}
-
-  const CollapseCollision<T>& now() const { return now_; }
-  /// p_{j+1}, the closing speed at the next collision; if it is not positive the sequence has ended.
-  const T& next_closing_speed() const { return next_speed_; }
-  /// Time from this collision to the next.
-  T interval() const { return T(now_.other_gap / next_speed_); }
-
-  /// Advances to the next collision; if there is none, returns false and changes nothing.
-  bool advance() {
-    if (!(next_speed_ > T(0))) return false;
-    const T speed = next_speed_;
-    next_speed_ = T(coupling_ * speed - eps_ * now_.closing_speed);
-    now_ = {now_.collision + 1, T(now_.time + now_.other_gap / speed), speed,
-            T(eps_ * now_.other_gap * (now_.closing_speed / speed))};
-    return true;
-  }
-
- private:
-  T eps_, coupling_;
-  CollapseCollision<T> now_;
-  T next_speed_;
-};
-
-/// Time of collapse, t_c = t_0 + g_0/(p_1 - lam- p_0): the collision times telescope. None where there is no collapse:
+/// Time of collapse, t_c = t_0 + g_0/(p_1 - lam- p_0), after a collision at `t0`, where gaps that close at `p0` touch,
+/// the others are `g0` wide and close at `p1` after it: the collision times telescope. None where there is no collapse:
 /// the roots are complex (eps too large) or p_1 <= lam- p_0 (the particles part after finitely many collisions).
 template <class T>
 std::optional<T> collapse_time(const T& restitution, const T& coupling, const T& t0, const T& p0, const T& g0,
@@ -115,25 +77,6 @@ std::optional<T> collapse_time(const T& restitution, const T& coupling, const T&
   const T excess = p1 - rates->minus * p0;
   if (!(excess > T(0))) return std::nullopt;
   return T(t0 + g0 / excess);
-}
-
-/// Time of collapse of three equal particles from their gaps (length) and closing speeds (length/time) at time 0.
-/// None where they do not collapse; simultaneous first collisions (a triple collision) have no defined outcome: none.
-template <class T>
-std::optional<T> three_particle_collapse_time(const T& restitution, const T& left_gap, const T& left_speed,
-                                              const T& right_gap, const T& right_speed) {
-  // The gap that closes first: g_l/w_l < g_r/w_r, written without division since either may be opening.
-  const T left_key = left_gap * right_speed;
-  const T right_key = right_gap * left_speed;
-  const bool left = left_speed > T(0) && (!(right_speed > T(0)) || left_key < right_key);
-  const bool right = right_speed > T(0) && (!(left_speed > T(0)) || right_key < left_key);
-  if (!left && !right) return std::nullopt;
-  const T& p0 = left ? left_speed : right_speed;
-  const T& speed = left ? right_speed : left_speed;
-  const T t0 = (left ? left_gap : right_gap) / p0;
-  const T g0 = (left ? right_gap : left_gap) - speed * t0;
-  const T coupling = checkerboard_coupling(restitution, 3);
-  return collapse_time(restitution, coupling, t0, p0, g0, T(speed + coupling * p0));
 }
 
 }  // namespace cradle::theory

@@ -128,7 +128,7 @@ TEST(Architecture, CoreUsesNoStandardMathematicsOnTheScalar) {
       R"(core/(base/(counter_rng|elementary|real)|certify/(certain_(power|state|walls?)|inspection)|)"
       R"(chains/configuration|ensemble/(histogram|moments)|initial/(rows|velocities)|laws/(approach|turns|wall)|)"
       R"(observe/(averages|batch_means|clusters|correlations|profile|scenario|structure|zone)|)"
-      R"(parallel/(observed|segments)|theory/(blast|domino|free_cooling))\.hpp)");
+      R"(parallel/(observed|segments)|theory/free_cooling)\.hpp)");
   const std::regex known(R"(^\s*using std::|std::isfinite\(rounded\))");
   for (const Line& line : code("core"))
     EXPECT_TRUE(std::regex_match(line.file, on_double) || !std::regex_search(line.text, maths) ||

@@ -1,5 +1,5 @@
 """A blast in a cold gas: the positions of the fronts and (A E t^2/rho)^(1/3), and profiles over x/R with the exact
-solution of Euler's equations for gamma = 3 (derived in core/theory/blast.hpp; arXiv:2010.15868)."""
+solution of Euler's equations for gamma = 3 (derived in bench/results/classics.md; arXiv:2010.15868)."""
 import numpy as np
 
 from .style import BLUE, GREY, power, shades

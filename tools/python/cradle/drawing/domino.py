@@ -1,5 +1,5 @@
 """Dominoes of two masses: when each heavy particle is first hit, and the closed form t = n - 1 + 1/(2c), c = m/(m +
-mu), for the mass ratios whose front is ballistic (derived in core/theory/domino.hpp; arXiv:2605.16125)."""
+mu), for the mass ratios whose front is ballistic (derived in bench/results/classics.md; arXiv:2605.16125)."""
 from fractions import Fraction
 
 import numpy as np

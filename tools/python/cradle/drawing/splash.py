@@ -1,5 +1,5 @@
-"""A splash: the outermost particle of a cold gas on a half-line is kicked. Front and energy at x > 0 against time,
-with exponents fitted for every point of a sweep over seeds, and those of Euler's equations (core/theory/splash.hpp)."""
+"""A splash: the outermost particle of a cold gas on a half-line is kicked. Front and energy at x > 0 against time, with
+exponents fitted for every point of a sweep over seeds, and those of Euler's equations (bench/results/classics.md)."""
 import numpy as np
 
 from .style import BLUE, ORANGE

@@ -59,7 +59,7 @@ template <int Limbs> class Mpfr {
   explicit operator double() const { return mpfr_get_d(&v_, MPFR_RNDN); }
   mpfr_srcptr get() const { return &v_; }
 
-  // Saves sign and kind and, for numbers other than 0, exponent and limbs.
+  // Saves kind (with the sign), sign and, for numbers other than 0, exponent and limbs.
   void save(auto& to) const {
     const std::array<std::int32_t, 2> kind{mpfr_custom_get_kind(&v_), mpfr_signbit(&v_)};
     to.put(kind.data(), sizeof kind);
@@ -71,25 +71,18 @@ template <int Limbs> class Mpfr {
   void load(auto& from) {
     std::array<std::int32_t, 2> kind{};
     from.get(kind.data(), sizeof kind);
-    mpfr_custom_init_set(&v_, MPFR_ZERO_KIND, 0, MpfrPrecision::bits(), limbs_.data());
-    const int sign = kind[1] != 0 ? -1 : 1;
-    if (const int of = std::abs(kind[0]); of == MPFR_REGULAR_KIND) {
-      std::int64_t exponent = 0;
+    bool valid = kind[0] >= -MPFR_REGULAR_KIND && kind[0] <= MPFR_REGULAR_KIND;
+    std::int64_t exponent = 0;
+    if (valid && std::abs(kind[0]) == MPFR_REGULAR_KIND) {
       from.get(&exponent, sizeof exponent);
       from.get(limbs_.data(), static_cast<std::size_t>(MpfrPrecision::limbs()) * sizeof(mp_limb_t));
       const auto leading = static_cast<std::size_t>(MpfrPrecision::limbs() - 1);
       const auto unused = MpfrPrecision::limbs() * GMP_NUMB_BITS - MpfrPrecision::bits();
-      if (limbs_[leading] >> (GMP_NUMB_BITS - 1) == 0 || (limbs_[0] & ((mp_limb_t{1} << unused) - 1)) != 0 ||
-          exponent < mpfr_get_emin() || exponent > mpfr_get_emax())
-        throw std::invalid_argument("no number (limbs that none has): take the file from a copy");
-      mpfr_custom_init_set(&v_, MPFR_REGULAR_KIND * sign, exponent, MpfrPrecision::bits(), limbs_.data());
-    } else if (of == MPFR_ZERO_KIND) {
-      mpfr_set_zero(&v_, sign);
-    } else if (of == MPFR_INF_KIND) {
-      mpfr_set_inf(&v_, sign);
-    } else {
-      mpfr_set_nan(&v_);
+      valid = limbs_[leading] >> (GMP_NUMB_BITS - 1) == 1 && (limbs_[0] & ((mp_limb_t{1} << unused) - 1)) == 0 &&
+              exponent >= mpfr_get_emin() && exponent <= mpfr_get_emax();
     }
+    if (!valid) throw std::invalid_argument("no number (limbs that none has): take the file from a copy");
+    mpfr_custom_init_set(&v_, kind[0], exponent, MpfrPrecision::bits(), limbs_.data());
   }
 
   friend Mpfr operator-(const Mpfr& x) {

@@ -1,6 +1,6 @@
 // MPFR held in place. Proves: operations of Mpfr<Limbs> give the bits of mpfr_t of the same precision, also where
 // operands and result are one object; the leading digits read off the limbs are those of mpfr_get_d_2exp; copies are
-// numbers of their own, however they are moved about in memory; zeros and signs are right.
+// numbers of their own, however they are moved about in memory; zeros and signs are right; saved numbers come back.
 #ifdef CRADLE_WITH_MPFR
 
 #include <gtest/gtest.h>
@@ -8,9 +8,12 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <stdexcept>
+#include <string>
 #include <utility>
 #include <vector>
 
+#include "cradle/core/base/state.hpp"
 #include "cradle/tests/precision/every_scalar.hpp"
 
 namespace cradle::test::mpfr_test {
@@ -155,6 +158,21 @@ TYPED_TEST(MpfrInPlace, ZerosAndIntegers) {
     EXPECT_EQ(mpfr_get_sj(T(i).get(), MPFR_RNDN), i);
   }
   EXPECT_EQ(static_cast<double>(T(-0.1)), -0.1);
+}
+
+TYPED_TEST(MpfrInPlace, SavedNumbersComeBackAndKindsThatThereAreNotAreRefused) {
+  using T = typename TypeParam::Scalar;
+  const T infinite = std::numeric_limits<T>::infinity(), none = std::numeric_limits<T>::quiet_NaN();
+  T loaded;
+  for (const T& x : {T(0), T(-T(0)), T(3), T(-0.1), infinite, T(-infinite), none}) {
+    SavedState state = SavedState::of(x);
+    load(state, loaded);
+    EXPECT_TRUE(same(loaded.get(), x.get()) && state.left() == 0) << to_double(x);
+  }
+  std::string bytes = SavedState::of(T(0)).bytes();
+  bytes[0] = 4;
+  SavedState damaged(bytes);
+  EXPECT_THROW(load(damaged, loaded), std::invalid_argument);
 }
 
 }  // namespace cradle::test::mpfr_test

@@ -66,7 +66,41 @@ template <Real T, class Masses> class GapPlaces : public HeldGaps<T, Masses> {
   // The particles that have collided and the next one on each side; before the first collision all held ones. On a ring
   // all particles, from the first one right of x = 0.
   Configuration<T> configuration(const T& time) const {
-    return on_ring() ? ring_configuration(time) : line_configuration(time);
+    const bool collided = range_.has_fronts();
+    const Slot from = collided && range_.front_left() > first() ? range_.front_left() - 1 : first();
+    const Slot to = collided && range_.front_right() < last() ? range_.front_right() + 1 : last();
+    const Slot end = on_ring() ? to : to + 1;  // of the last particle
+    const auto n = static_cast<std::size_t>(end + 1 - from);
+
+    Configuration<T> c;
+    c.reserve(n);
+    c.time = clock().time(time);
+    c.speeds_are_sums = !line_.exact_sums();
+    for (Slot s = from; s <= end; ++s) {
+      c.index.push_back(particle(s));
+      c.m.push_back(line_.masses[s]);
+    }
+    c.from = particle(from), c.to = particle(end);
+    if (on_ring()) c.collided_to = n;
+    if (collided) c.collided_from = range_.front_left() - from, c.collided_to = range_.front_right() - from + 2;
+    Sums sums;
+    sums.ways.reserve(n + 1), sums.slowings.reserve(n + 1);
+    for (Slot s = from; s <= to; ++s) {
+      c.gap.push_back(gap_at(s, time));
+      c.closing_speed.push_back(closing_at(s, time));
+      sums.way.add(c.gap.back());
+      if (falls())
+        sums.slowing.add(c.closing_speed.back());
+      else
+        line_.add_closing(s, sums.slowing);
+      sums.ways.push_back(sums.way.value());
+      sums.slowings.push_back(line_.exact_sums() ? sums.slowing.pair() : Pair<T>{sums.slowing.value(), T(0)});
+    }
+    if (on_ring())
+      place_on_ring(c, sums, time);
+    else
+      place_on_line(c, sums, time);
+    return c;
   }
 
  protected:
@@ -158,95 +192,50 @@ template <Real T, class Masses> class GapPlaces : public HeldGaps<T, Masses> {
       return gap < T(certain_by) * (magnitude(speed) * off_by(time) + slow);
   }
 
-  Configuration<T> ring_configuration(const T& time) const {
-    Configuration<T> c;
-    c.time = clock().time(time);
-    c.speeds_are_sums = !line_.exact_sums();
-    c.to = particles_->count() - 1;
-    c.collided_to = static_cast<std::size_t>(particles_->count());
-    CompensatedSum<T> way, slowing, moment, momentum;
-    std::vector<T> ways;
-    std::vector<Pair<T>> slowings;  // from particle 0 to each one
-    const auto n = static_cast<std::size_t>(particles_->count());
-    c.reserve(n), ways.reserve(n), slowings.reserve(n);
-    std::size_t heaviest = 0;
-    for (Slot s = first(); s <= last(); ++s) {
-      c.index.push_back(particle(s));
-      c.m.push_back(line_.masses[s]);
-      ways.push_back(way.value());
-      slowings.push_back(line_.exact_sums() ? slowing.pair() : Pair<T>{slowing.value(), T(0)});
-      moment.add(c.m.back() * ways.back());
-      if (c.m[heaviest] < c.m.back()) heaviest = c.m.size() - 1;
-      c.gap.push_back(gap_at(s, time));
-      c.closing_speed.push_back(closing(s));
-      way.add(c.gap.back());
-      line_.add_closing(s, slowing);
-    }
+  // Sums of the gaps and of the closing speeds of a configuration, from its first particle on.
+  struct Sums {
+    CompensatedSum<T> way, slowing;  // over all
+    std::vector<T> ways{T(0)};       // to each particle, on a ring at last around it
+    std::vector<Pair<T>> slowings{{}};
+  };
+
+  void place_on_ring(Configuration<T>& c, Sums& sums, const T& time) const {
+    CompensatedSum<T> moment, momentum;
+    for (std::size_t j = 0; j < c.m.size(); ++j) moment.add(c.m[j] * sums.ways[j]);
     // If masses are far apart, sums begin at the heaviest particle, so that light ones have the errors.
     if (line_.exact_sums()) {
-      const Pair<T> own = slowings[heaviest];
-      for (Pair<T>& each : slowings) each = each - own;
+      const auto heaviest = std::max_element(c.m.begin(), c.m.end()) - c.m.begin();
+      const Pair<T> own = sums.slowings[static_cast<std::size_t>(heaviest)];
+      for (Pair<T>& each : sums.slowings) each = each - own;
     }
-    for (std::size_t j = 0; j < slowings.size(); ++j) momentum.add(c.m[j] * slowings[j].value());
-    c.closure_gap = particles_->circumference() - way.value();
-    c.closure_speed = -slowing.value();
+    for (std::size_t j = 0; j < c.m.size(); ++j) momentum.add(c.m[j] * sums.slowings[j].value());
+    c.closure_gap = particles_->circumference() - sums.way.value();
+    c.closure_speed = -sums.slowing.value();
     const T mass = particles_->total_mass(), drift = particles_->momentum() / mass;
     if (!centre_) centre_ = particles_->centre_of_mass();
     const Pair<T> start = two_sum(*centre_, T(drift * clock().elapsed(time))) - T(moment.value() / mass);
-    const T stretch = *c.closure_gap / way.value();
+    const T stretch = *c.closure_gap / sums.way.value();
     const T speed = drift + momentum.value() / mass;
-    for (std::size_t j = 0; j < ways.size(); ++j) {
-      c.x.push_back((start + T(ways[j] + stretch * ways[j])).value());
-      c.v.push_back(speed - slowings[j].value());
+    for (std::size_t j = 0; j < c.m.size(); ++j) {
+      c.x.push_back((start + T(sums.ways[j] + stretch * sums.ways[j])).value());
+      c.v.push_back(speed - sums.slowings[j].value());
     }
     fold(c, particles_->circumference());
-    return c;
   }
 
-  Configuration<T> line_configuration(const T& time) const {
-    const bool collided = range_.has_fronts();
-    const Slot from = collided && range_.front_left() > first() ? range_.front_left() - 1 : first();
-    const Slot to = collided && range_.front_right() < last() ? range_.front_right() + 1 : last();
-    const auto n = static_cast<std::size_t>(to + 2 - from);
-
-    Configuration<T> c;
-    c.reserve(n);
-    c.time = clock().time(time);
-    c.speeds_are_sums = !line_.exact_sums();
-    for (Slot s = from; s <= to + 1; ++s) {
-      c.index.push_back(particle(s));
-      c.m.push_back(line_.masses[s]);
-    }
-    c.from = particle(from);
-    c.to = particle(to) + 1;
-    if (collided) c.collided_from = range_.front_left() - from, c.collided_to = range_.front_right() - from + 2;
-    CompensatedSum<T> way, slowing;
-    std::vector<T> ways{T(0)};
-    std::vector<Pair<T>> slowings{{}};  // from the left anchor to each particle
-    ways.reserve(n), slowings.reserve(n);
-    for (Slot s = from; s <= to; ++s) {
-      c.gap.push_back(gap_at(s, time));
-      c.closing_speed.push_back(closing_at(s, time));
-      way.add(c.gap.back());
-      if (falls())
-        slowing.add(c.closing_speed.back());
-      else
-        line_.add_closing(s, slowing);
-      ways.push_back(way.value());
-      slowings.push_back(line_.exact_sums() ? slowing.pair() : Pair<T>{slowing.value(), T(0)});
-    }
+  void place_on_line(Configuration<T>& c, const Sums& sums, const T& time) const {
     const Flight<T> left = flight(left_, time), right = flight(right_, time);
-    c.closure_gap = difference(right.x, left.x) - way.value();
-    c.closure_speed = line_.exact_sums() ? T((left.v - right.v - slowing.pair()).value())
-                                         : T(difference(left.v, right.v) - slowing.value());
-    const T stretch = way.value() > T(0) ? T(*c.closure_gap / way.value()) : T(0);
-    for (std::size_t j = 0; j < n; ++j) {
-      c.x.push_back((left.x + T(ways[j] + stretch * ways[j])).value());
-      const T share = n > 1 ? T(T(static_cast<std::int64_t>(j)) / T(static_cast<std::int64_t>(n - 1))) : T(0);
-      c.v.push_back((left.v - slowings[j].low - T(slowings[j].high + share * *c.closure_speed)).value());
+    c.closure_gap = difference(right.x, left.x) - sums.way.value();
+    c.closure_speed = line_.exact_sums() ? T((left.v - right.v - sums.slowing.pair()).value())
+                                         : T(difference(left.v, right.v) - sums.slowing.value());
+    const T stretch = sums.way.value() > T(0) ? T(*c.closure_gap / sums.way.value()) : T(0);
+    const auto n = static_cast<std::int64_t>(c.m.size());
+    for (std::size_t j = 0; j < c.m.size(); ++j) {
+      c.x.push_back((left.x + T(sums.ways[j] + stretch * sums.ways[j])).value());
+      const T share = n > 1 ? T(T(static_cast<std::int64_t>(j)) / T(n - 1)) : T(0);
+      c.v.push_back((left.v - sums.slowings[j].low - T(sums.slowings[j].high + share * *c.closure_speed)).value());
     }
     leave_out_walls(c, particles_->count());
-    return c;
   }
 };
 

@@ -20,7 +20,6 @@
 #include <cstdint>
 #include <iterator>
 #include <map>
-#include <memory>
 #include <mutex>
 #include <optional>
 #include <stdexcept>
@@ -64,7 +63,8 @@ inline void append(std::vector<TreeNode>& nodes, TreeNode next, std::vector<Mome
   nodes.push_back(std::move(next));
 }
 
-/// All functions may be called from several threads at once.
+/// All functions may be called from several threads at once. A thread that adds many replicas combines them first, by
+/// `append`, since others wait while nodes are combined here.
 class MomentTree {
  public:
   /// Adds one replica's vector; none for a failed replica.
@@ -78,16 +78,33 @@ class MomentTree {
     if (node.level > 62 || node.first >> 63 || (node.first & (node.range().count - 1)) != 0)
       throw std::invalid_argument("no node of the tree of replicas: index " + std::to_string(node.first) + ", level " +
                                   std::to_string(node.level));
-    std::optional<Siblings> siblings = keep(std::move(node));
-    // Combining two nodes is slow, so it is done outside the lock; until it is done readers see the two nodes.
-    while (siblings) siblings = replace(*siblings, combine(*siblings->lower, *siblings->upper));
+    const std::scoped_lock lock(mutex_);
+    if (holds_some_of(node.range()))
+      throw std::invalid_argument("replicas " + std::to_string(node.first) + " to " +
+                                  std::to_string(node.range().end() - 1) + ": some of them are there already");
+    if (node.moments.replicas > 0) {
+      if (entries_.value_or(node.moments.entries()) != node.moments.entries())
+        throw std::invalid_argument("statistics of vectors of different lengths (" + std::to_string(*entries_) +
+                                    " and " + std::to_string(node.moments.entries()) + " numbers)");
+      entries_ = node.moments.entries();
+    }
+    for (;; ++node.level) {  // siblings become one node
+      const auto sibling = nodes_.find(node.first ^ node.range().count);
+      if (sibling == nodes_.end() || sibling->second.level != node.level) break;
+      TreeNode upper = std::move(sibling->second);
+      nodes_.erase(sibling);
+      if (upper.first < node.first) std::swap(node, upper);
+      node.moments = combine(std::move(node.moments), upper.moments);
+    }
+    const ReplicaIndex first = node.first;
+    nodes_.emplace(first, std::move(node));
   }
 
   /// Statistics of the whole set.
   Moments total() const {
     const std::scoped_lock lock(mutex_);
     if (nodes_.empty()) return {};
-    return fold({0, std::bit_ceil(range(std::prev(nodes_.end())).end())});
+    return fold({0, std::bit_ceil(nodes_.rbegin()->second.range().end())});
   }
 
   /// The nodes of the set, by index.
@@ -95,7 +112,7 @@ class MomentTree {
     const std::scoped_lock lock(mutex_);
     std::vector<TreeNode> all;
     all.reserve(nodes_.size());
-    for (const auto& [first, held] : nodes_) all.push_back({first, held.level, *held.moments});
+    for (const auto& [first, node] : nodes_) all.push_back(node);
     return all;
   }
 
@@ -103,7 +120,7 @@ class MomentTree {
   std::uint64_t size() const {
     const std::scoped_lock lock(mutex_);
     std::uint64_t sum = 0;
-    for (auto at = nodes_.begin(); at != nodes_.end(); ++at) sum += range(at).count;
+    for (const auto& [first, node] : nodes_) sum += node.range().count;
     return sum;
   }
 
@@ -119,11 +136,11 @@ class MomentTree {
   std::vector<ReplicaRange> present() const {
     const std::scoped_lock lock(mutex_);
     std::vector<ReplicaRange> ranges;
-    for (auto at = nodes_.begin(); at != nodes_.end(); ++at)
-      if (!ranges.empty() && ranges.back().end() == at->first)
-        ranges.back().count += range(at).count;
+    for (const auto& [first, node] : nodes_)
+      if (!ranges.empty() && ranges.back().end() == first)
+        ranges.back().count += node.range().count;
       else
-        ranges.push_back(range(at));
+        ranges.push_back(node.range());
     return ranges;
   }
   /// The missing ones of these replicas.
@@ -139,67 +156,23 @@ class MomentTree {
   }
 
  private:
-  struct Held {
-    unsigned level;
-    std::shared_ptr<const Moments> moments;
-  };
-  using Nodes = std::map<ReplicaIndex, Held>;  // disjoint, so the first index names a node
-
-  static ReplicaRange range(Nodes::const_iterator at) { return {at->first, std::uint64_t{1} << at->second.level}; }
-
   bool holds_some_of(ReplicaRange wanted) const {
     auto after = nodes_.lower_bound(wanted.end());  // the first node beyond; the one before it extends furthest
-    return after != nodes_.begin() && range(std::prev(after)).end() > wanted.first && wanted.count > 0;
-  }
-
-  struct Siblings {
-    ReplicaIndex first;  // of the lower one
-    unsigned level;
-    std::shared_ptr<const Moments> lower, upper;
-  };
-
-  std::optional<Siblings> keep(TreeNode node) {
-    const std::scoped_lock lock(mutex_);
-    if (holds_some_of(node.range()))
-      throw std::invalid_argument("replicas " + std::to_string(node.first) + " to " +
-                                  std::to_string(node.range().end() - 1) + ": some of them are there already");
-    if (node.moments.replicas > 0) {
-      if (entries_.value_or(node.moments.entries()) != node.moments.entries())
-        throw std::invalid_argument("statistics of vectors of different lengths (" + std::to_string(*entries_) +
-                                    " and " + std::to_string(node.moments.entries()) + " numbers)");
-      entries_ = node.moments.entries();
-    }
-    return hold(node.first, node.level, std::move(node.moments));
-  }
-
-  std::optional<Siblings> replace(const Siblings& halves, Moments whole) {
-    const std::scoped_lock lock(mutex_);
-    nodes_.erase(halves.first);
-    nodes_.erase(halves.first + (std::uint64_t{1} << halves.level));
-    return hold(halves.first, halves.level + 1, std::move(whole));
-  }
-
-  // Adds a node. If its sibling is present, both are returned: only the caller that added the later one gets them.
-  std::optional<Siblings> hold(ReplicaIndex first, unsigned level, Moments moments) {
-    auto lower = nodes_.emplace(first, Held{level, std::make_shared<const Moments>(std::move(moments))}).first;
-    auto upper = nodes_.find(first ^ (std::uint64_t{1} << level));
-    if (upper == nodes_.end() || upper->second.level != level) return std::nullopt;
-    if (upper->first < first) std::swap(lower, upper);
-    return Siblings{lower->first, level, lower->second.moments, upper->second.moments};
+    return after != nodes_.begin() && std::prev(after)->second.range().end() > wanted.first && wanted.count > 0;
   }
 
   // The moments of the node over `whole`, full or not.
   Moments fold(ReplicaRange whole) const {
     const auto at = nodes_.lower_bound(whole.first);
     if (at == nodes_.end() || at->first >= whole.end()) return {};
-    if (range(at) == whole) return *at->second.moments;
+    if (at->second.range() == whole) return at->second.moments;
     const std::uint64_t half = whole.count / 2;
     return combine(fold({whole.first, half}), fold({whole.first + half, half}));
   }
 
   mutable std::mutex mutex_;
-  Nodes nodes_;
-  std::optional<std::size_t> entries_;  // length of every vector
+  std::map<ReplicaIndex, TreeNode> nodes_;  // disjoint, so the first index names a node
+  std::optional<std::size_t> entries_;      // length of every vector
 };
 
 }  // namespace cradle

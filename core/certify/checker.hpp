@@ -21,8 +21,8 @@
 #include <span>
 #include <utility>
 
-#include "cradle/core/certify/in_levels.hpp"
 #include "cradle/core/certify/inspection.hpp"
+#include "cradle/core/certify/side_by_side.hpp"
 
 namespace cradle {
 

@@ -18,8 +18,7 @@
 #include <vector>
 
 #include "cradle/core/ensemble/executor.hpp"
-#include "cradle/core/ensemble/histogram.hpp"
-#include "cradle/core/ensemble/moments.hpp"
+#include "cradle/core/ensemble/statistics.hpp"
 #include "cradle/core/ensemble/tbb_executor.hpp"
 #include "cradle/core/ensemble/tree.hpp"
 

@@ -28,7 +28,7 @@
 #include <utility>
 #include <vector>
 
-#include "cradle/core/ensemble/moments.hpp"
+#include "cradle/core/ensemble/statistics.hpp"
 
 namespace cradle {
 

@@ -126,7 +126,7 @@ TEST(Architecture, CoreUsesNoStandardMathematicsOnTheScalar) {
       R"(ceil|round|isnan|isfinite|ldexp|frexp)\b)");
   const std::regex on_double(
       R"(core/(base/(counter_rng|elementary|real)|certify/(certain_(power|state|walls?)|inspection)|)"
-      R"(chains/configuration|ensemble/(histogram|moments)|initial/(rows|velocities)|laws/(approach|turns|wall)|)"
+      R"(chains/configuration|ensemble/statistics|initial/(rows|velocities)|laws/(approach|turns|wall)|)"
       R"(observe/(averages|batch_means|clusters|correlations|profile|scenario|structure|zone)|)"
       R"(parallel/(observed|segments)|theory/free_cooling)\.hpp)");
   const std::regex known(R"(^\s*using std::|std::isfinite\(rounded\))");

@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-#include "cradle/core/ensemble/histogram.hpp"
+#include "cradle/core/ensemble/statistics.hpp"
 #include "cradle/core/ensemble/tree.hpp"
 #include "cradle/tools/support/atomic_file.hpp"
 #include "cradle/tools/support/bytes.hpp"

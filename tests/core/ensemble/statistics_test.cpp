@@ -16,7 +16,7 @@
 #include <thread>
 
 #include "cradle/core/base/counter_rng.hpp"
-#include "cradle/core/ensemble/histogram.hpp"
+#include "cradle/core/ensemble/statistics.hpp"
 #include "cradle/tests/core/rational.hpp"
 #include "cradle/tests/core/replicas.hpp"
 

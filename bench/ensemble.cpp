@@ -35,7 +35,7 @@
 #include "cradle/core/chains/cluster_chain.hpp"
 #include "cradle/core/chains/gap_chain.hpp"
 #include "cradle/core/engine/simulation.hpp"
-#include "cradle/core/initial/ring.hpp"
+#include "cradle/core/initial/gas.hpp"
 #include "cradle/core/initial/rows.hpp"
 #include "cradle/tools/ensemble/ensemble.hpp"
 #include "cradle/tools/setup/read_scene.hpp"

@@ -20,7 +20,7 @@ template <Real T> class MassPattern {
  public:
   MassPattern() = default;
   // `identical`: whether all masses are the same number; by default they are compared in the type. Callers that know
-  // more digits than the type has must give it, since the velocities of a ring depend on it (ring.hpp). Throws
+  // more digits than the type has must give it, since the velocities of a ring depend on it (gas.hpp). Throws
   // std::invalid_argument for masses that are not positive and finite.
   explicit MassPattern(std::vector<T> masses, std::optional<bool> identical = {}) : masses_(std::move(masses)) {
     for (std::size_t j = 0; j < masses_.size(); ++j) {
@@ -47,7 +47,7 @@ template <Real T> class MassPattern {
     sums.reserve(static_cast<std::size_t>(count) + 1);
     std::int64_t low = drawn_unit, high = 0;
     for (ParticleIndex particle = 0; particle < count; ++particle) {
-      // Indices that no velocity, no gap and no wall has (ring.hpp, poisson.hpp, wall.hpp).
+      // Indices that no velocity, no gap and no wall has (gas.hpp, poisson.hpp, wall.hpp).
       const std::uint64_t index = static_cast<std::uint64_t>(particle) | std::uint64_t{0xFC} << 56;
       const std::int64_t n = uniform_integer(random_bits(seed, replica, index), drawn_unit / 2) + drawn_unit / 2;
       low = std::min(low, n), high = std::max(high, n);

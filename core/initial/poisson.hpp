@@ -20,7 +20,7 @@ namespace cradle {
 
 // An exponential gap of mean 1, in units of 2^-28.
 inline std::int64_t exponential_gap(std::uint64_t seed, std::uint64_t replica, ParticleIndex particle) {
-  // Indices that no velocity and no wall has (ring.hpp, wall.hpp).
+  // Indices that no velocity and no wall has (gas.hpp, wall.hpp).
   const std::uint64_t bits =
       random_bits(seed, replica, static_cast<std::uint64_t>(particle) | std::uint64_t{0xFD} << 56);
   return static_cast<std::int64_t>(exponential(bits) * static_cast<double>(displacement_unit)) + 1;

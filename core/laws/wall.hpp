@@ -65,7 +65,7 @@ template <Real T> T given_by(const WallTallies<T>& walls) { return walls[0].give
 
 // The speed after collision number k of a particle of mass 1 with a wall of temperature 1.
 inline double thermal_speed(std::uint64_t seed, std::uint64_t replica, End end, std::uint64_t collision) {
-  // Indices that no particle has: displacements and velocities use those up to about 2^62 (counter_rng.hpp, ring.hpp).
+  // Indices that no particle has: displacements and velocities use those up to about 2^62 (counter_rng.hpp, gas.hpp).
   const std::uint64_t bits =
       random_bits(seed, replica, collision | (std::uint64_t{end == End::left ? 0xFEU : 0xFFU} << 56));
   return std::sqrt(2 * exponential(bits));

@@ -15,8 +15,8 @@
 #include "cradle/core/chains/position_chain.hpp"
 #include "cradle/core/engine/simulation.hpp"
 #include "cradle/core/initial/cold.hpp"
+#include "cradle/core/initial/gas.hpp"
 #include "cradle/core/initial/list.hpp"
-#include "cradle/core/initial/ring.hpp"
 #include "cradle/core/initial/rows.hpp"
 #include "cradle/core/laws/law.hpp"
 

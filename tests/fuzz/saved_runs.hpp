@@ -9,7 +9,7 @@
 #include "cradle/core/chains/position_chain.hpp"
 #include "cradle/core/engine/simulation.hpp"
 #include "cradle/core/engine/sticky_gas.hpp"
-#include "cradle/core/initial/ring.hpp"
+#include "cradle/core/initial/gas.hpp"
 #include "cradle/core/initial/rows.hpp"
 
 namespace cradle::fuzz {

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "cradle/core/initial/ring.hpp"
+#include "cradle/core/initial/gas.hpp"
 #include "cradle/core/initial/rows.hpp"
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/precision/drawn_scenes.hpp"

@@ -11,7 +11,6 @@
 #include "cradle/core/initial/gas.hpp"
 #include "cradle/core/initial/list.hpp"
 #include "cradle/core/initial/poisson.hpp"
-#include "cradle/core/initial/ring.hpp"
 #include "cradle/core/initial/rows.hpp"
 #include "cradle/core/initial/walled.hpp"
 #include "cradle/precision/text.hpp"

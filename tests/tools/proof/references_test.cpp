@@ -7,7 +7,7 @@
 
 #include <fmt/ranges.h>
 
-#include "cradle/core/initial/ring.hpp"
+#include "cradle/core/initial/gas.hpp"
 #include "cradle/tests/precision/reference_gas.hpp"
 #include "cradle/tests/tools/program.hpp"
 #include "cradle/tools/proof/certify.hpp"

@@ -1,6 +1,5 @@
 // Collisions per second with particles that merge or pass through each other, wet and sticky, and of a conventional
-// engine in absolute coordinates (twins/merging.hpp). Compare the ratios within one run. Also the sticky gas without
-// events: the O(N) solution of core/engine/sticky_gas.hpp.
+// engine in absolute coordinates (twins/merging.hpp). Compare the ratios within one run.
 //
 //   cmake --preset release && cmake --build --preset release --target bench_merging
 //   build/release/bench/bench_merging --benchmark_repetitions=3 --benchmark_report_aggregates_only=true

@@ -11,8 +11,10 @@
 //
 // Tolerance. Let v be the largest error of one operation. A collision takes 3 roundings of a gap and 6 of a closing
 // speed (collisions_down_to), a flight 3 more: the n-th interval is off by 12 (n+1) v. Intervals fall
-// by q = lam-/lam+, so all are off by 12 v (t_c - t_0)/(1 - q) together. The run stops when t_c moved by less than half
-// an epsilon of the time elapsed twice running, with q < 1/2 within one epsilon; its rounding to one number is another.
+// by q = lam-/lam+, so all are off by 12 v (t_c - t_0)/(1 - q) together; their sum is rounded once more.
+// A run reports t_c = t_0 + g_0/z, z = p_1 - r lam p_0, as the first collision gives it, whose bound is the least here.
+// t_0, g_0 and p_0 are exact; p_1 has at most 5 roundings, and r lam, less than p_1/8, at most 24. With those of the
+// difference and of the quotient g_0/z is off by 12 v (t_c - t_0) at most.
 #ifdef CRADLE_WITH_MPFR
 
 #include <gtest/gtest.h>

@@ -24,6 +24,14 @@ class CollapsePolicies : public testing::TestWithParam<ThreeCollapse> {
 };
 INSTANTIATE_TEST_SUITE_P(ThreeParticles, CollapsePolicies, testing::ValuesIn(three_collapses));
 
+// From a smallest gap of 1 at the start.
+TEST(CollapsePolicies, AStopGapSaysByWhatFactorGapsShrink) {
+  const GapChain<double> chain(three_particles(), 0.);
+  EXPECT_EQ((Policy<double>{CollapsePolicy::stop, 0x1p-900}.followed(chain)), 0x1p900);
+  EXPECT_EQ((Policy<double>{CollapsePolicy::stop, 2}.followed(chain)), 1);
+  EXPECT_EQ((Policy<double>{CollapsePolicy::cutoff, 0x1p-900}.followed(chain)), 1);
+}
+
 TEST_P(CollapsePolicies, PlainClockStandsStillEarly) {
   double t = 0;
   std::uint64_t collisions = 0, moved_last = 0;
@@ -34,13 +42,6 @@ TEST_P(CollapsePolicies, PlainClockStandsStillEarly) {
     t += collision.interval;
   });
   EXPECT_EQ(moved_last, GetParam().plain_clock_stops);
-}
-
-TEST_P(CollapsePolicies, GapsShrinkByAKnownFactorUntilARunStops) {
-  const auto run = stopping_run(0);
-  EXPECT_EQ((Policy<double>{CollapsePolicy::stop, 0x1p-900}.followed(run.chain())), 0x1p900);
-  EXPECT_EQ((Policy<double>{CollapsePolicy::stop, 2}.followed(run.chain())), 1);
-  EXPECT_EQ((Policy<double>{CollapsePolicy::cutoff, 0x1p-900}.followed(run.chain())), 1);
 }
 
 TEST_P(CollapsePolicies, StopSettlesTheCollapseTime) {

@@ -46,7 +46,7 @@ template <class T> void expect_same_merging(const Scene<T>& scene, const std::ve
                        InelasticMerging<T>(Inelastic<T>(T(9) / T(10)), T(1) / T(20)));
 }
 
-// ---- law x initial state x masses x type x segmentation: 510 runs, every one compared at several times
+// ---- law x initial state x masses x type x segmentation, with and without an observer, at several times
 
 template <class T> class Cells : public ::testing::Test {
  protected:

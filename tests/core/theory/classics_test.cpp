@@ -142,7 +142,8 @@ TEST(Splash, FrontAndEnergyAreThatOfOneSolution) {
 
 // ---- collapse on a ring
 
-// No ring collapses that is smaller than the number of particles that do in free space, and rings of twice as many do.
+// No ring collapses that is smaller than the number of particles that do in free space, and rings of three times as
+// many do.
 TEST(CollapseNumber, OfRingsIsThatOfFreeParticlesOrMore) {
   for (const double eps : {.5, .8}) {
     const double onset = *theory::collapse_onset_particles(eps);

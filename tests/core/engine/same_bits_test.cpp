@@ -1,9 +1,10 @@
 // What must not change a bit of a run. Proves, for every kind of chain, law and scene below: a run has the same bits
 // with output once, ten or ten thousand times, or at the very time of each collision; with and without an observer;
 // with any number of index bits in the queue's keys; if it streams its rows, holds them completely, or has the same
-// particles as a list; if identical particles have their masses one by one, and masses are watched or not; and if it is
-// saved anywhere and continued by another run. And what holds in each of them: the
-// guards are silent (the ledger is the direct sum, momentum, order and closure are kept), and no order is lost.
+// particles as a list; if identical particles have their masses one by one, and masses are watched or not; if it is
+// saved anywhere and continued by another run; and if a run of other particles begins again with its own. And what
+// holds in each of them: the guards are silent (the ledger is the direct sum, momentum, order and closure are kept),
+// and no order is lost.
 #include <gtest/gtest.h>
 
 #include <vector>
@@ -291,6 +292,36 @@ TEST(SameBits, SavedAnywhereAndContinued) {
     expect_same_from_anywhere([&] { return gas.run(); }, gas.end / 15.3, gas.end,
                               [&](const auto& later, const auto& whole) { expect_same_state(later, whole, gas.end); });
   });
+}
+
+// `anew` is of these particles, `again` of any.
+template <class Run> void expect_begun_again(Run again, Run anew, const Scene<double>& particles, double end) {
+  again.advance(end);
+  again.begin_again(particles);
+  for (const double t : {end / 3, end}) {
+    EXPECT_EQ(again.advance(t), anew.advance(t));
+    EXPECT_TRUE(SavedState::of(again) == SavedState::of(anew)) << t;
+    EXPECT_EQ(again.counts().close_calls, anew.counts().close_calls);
+    EXPECT_EQ(again.kinetic_energy(t), anew.kinetic_energy(t));
+  }
+}
+
+// A run of the gas of this kind that comes before it in the list: of more particles or fewer, on a line or a ring, with
+// walls or without.
+TEST(SameBits, BegunAgainAfterOtherParticles) {
+  for_each_gas([]<class Chain, class Law>(const Gas<Chain, Law>& gas) {
+    SCOPED_TRACE(gas.name);
+    static Scene<double> before = gas.particles;
+    const Gas<Chain, Law> other{"", std::exchange(before, gas.particles), gas.law, 0, 0};
+    expect_begun_again(other.run(), gas.run(), gas.particles, gas.end);
+  });
+  const Scene<double> before = uniform_rows(6, 0.2, 1), after = uniform_rows(6, 0.2, 2);
+  const Dry soft(0.05);
+  const Policy<double> stop{CollapsePolicy::stop};
+  expect_begun_again(gap_run(before, soft, stop), gap_run(after, soft, stop), after, 8);
+  expect_begun_again(position_run(before, soft, stop), position_run(after, soft, stop), after, 8);
+  const auto watched = [](const Scene<double>& particles) { return Gas<Watched, Dry>{"", particles, law, 0, 0}.run(); };
+  expect_begun_again(watched(unequal_rows()), watched(cold_gas(8, HotPlace::left)), cold_gas(8, HotPlace::left), 80);
 }
 
 // 16 slots and a million are the same run: what keys cannot distinguish is decided by exact times. Returns the close

@@ -95,6 +95,21 @@ TEST(Segments, OfARingOfClusters) {
   EXPECT_GT(made.again, 10U);
 }
 
+// Segments may be kept where a run begins again: how they are made does not show.
+TEST(Segments, OfTheRunBefore) {
+  const Inelastic<double> soft(0.9, 1e-2);
+  GapSegments segments({}, quick);
+  for (const auto& [before, after] : {std::pair{gaussian_ring(1000, 1000, 1), gaussian_ring(1000, 1000, 2)},
+                                      {uniform_rows(3000, 0.2, 1), uniform_rows(3000, 0.2, 2)}}) {
+    auto again = gap_run(before, soft), anew = gap_run(after, soft);
+    again.advance(30, segments);
+    again.begin_again(after);
+    again.advance(30, segments), anew.advance(30);
+    EXPECT_TRUE(SavedState::of(again) == SavedState::of(anew));
+  }
+  EXPECT_GT(segments.statistics().slabs, 4U);
+}
+
 // A run that was interrupted between two time slabs has no queue; whoever steps on gets one.
 TEST(Segments, SingleStepsAfterAnInterrupt) {
   int calls = 0;

@@ -1,13 +1,9 @@
 // Threads in the types whose queue keys are rounded times: double-double, binary128 and MPFR, whose working precision
 // is one value per process set before the threads start. Proves: one run in segments has the bits of the plain loop
-// there too, the energy lost included, which these types sum up gap by gap; in all types two runs at once give the bits
-// of the same two runs in turn.
+// there too, the energy lost included, which these types sum up gap by gap. (Runs at once:
+// tools/ensemble/same_bytes_test.cpp.)
 #include "cradle/tests/core/segmented.hpp"
 
-#include <optional>
-#include <thread>
-
-#include "cradle/tests/core/compare.hpp"
 #include "cradle/tests/precision/every_scalar.hpp"
 
 namespace cradle::test::precision_threads_test {
@@ -42,33 +38,6 @@ TYPED_TEST(WideThreads, SegmentsOfParticlesThatMergeOnARing) {
   made += expect_same_in_segments<ClusterChain<T>>(scene, Sticky<T>(), {as}, {T(5), T(40)});
   EXPECT_GT(made.slabs, 10U);
   EXPECT_GT(made.again, 0U);
-}
-
-// ---- runs side by side
-
-template <class P> using Threads = InPrecision<P>;
-TYPED_TEST_SUITE(Threads, EachKindOfPrecision, PrecisionName);
-
-// The restitution distinguishes the runs.
-TYPED_TEST(Threads, RunsAtOnceHaveTheBitsOfRunsInTurn) {
-  using T = typename TypeParam::Scalar;
-  const T end(75);
-  const auto run = [&](const char* restitution) {
-    auto made = gap_run(rshock<T>(200), Inelastic<T>(from_text<T>(restitution), from_text<T>("1e-3")));
-    made.advance(end);
-    return made;
-  };
-  const auto first = run(".9"), second = run(".92");
-  ASSERT_FALSE(identical(first.configuration(end), second.configuration(end)));
-  for (int repeat = 0; repeat < 3; ++repeat) {
-    std::optional<GapRun<T>> at_once[2];
-    {
-      std::jthread one([&] { at_once[0] = run(".9"); });
-      std::jthread other([&] { at_once[1] = run(".92"); });
-    }
-    expect_same_state(first, *at_once[0], end);
-    expect_same_state(second, *at_once[1], end);
-  }
 }
 
 }  // namespace cradle::test::precision_threads_test

@@ -251,28 +251,4 @@ TEST(FallingDensity, RefusesWhatHasNoDistance) {
   EXPECT_THROW(uniform_places(0, 1, 0), std::invalid_argument);
 }
 
-// Mean-square displacement of identical elastic particles, rho = T = 1, from Poisson positions (Jepsen, J. Math. Phys.
-// 6, 405, 1965): 0.5297 at t = 1, 2.170 at t = 3, to four digits. From a lattice it is .65 of it at first. Errors
-// follow from the means over 100 stretches of the ring, each much longer than the correlations.
-TEST(PoissonPositions, DiffuseAsJepsenComputed) {
-  constexpr ParticleIndex count = 40000;
-  constexpr std::size_t stretches = 100;
-  const auto ring =
-      std::make_shared<Ring<double>>(count, double(count), 1., gaussian_velocity(8, 0), uniform_places(count, 8, 0));
-  auto run = gap_run<double>(ring, Inelastic<double>(1.));
-  for (const auto& [t, exact] : {std::pair(1., 0.5297), std::pair(3., 2.170)}) {
-    ASSERT_EQ(run.advance(t), Status::reached);
-    const auto now = configuration_at(run, t);
-    std::vector<double> mean(stretches, 0);
-    for (std::size_t k = 0; k < now.x.size(); ++k) {
-      const ParticleIndex p = now.index[k];
-      const double moved = std::remainder(now.x[k] - ring->position(p), double(count));
-      mean[static_cast<std::size_t>(p) * stretches / count] += moved * moved * stretches / count;
-    }
-    const auto [all, error] = mean_of(mean);
-    EXPECT_LT(std::abs(all - exact), deviations * error) << all;
-    EXPECT_LT(error, 0.03 * exact);  // far from .65
-  }
-}
-
 }  // namespace cradle::test::random_places_test

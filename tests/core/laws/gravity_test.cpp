@@ -1,5 +1,6 @@
-// Gravity: one ball against closed forms; columns in free fall, which are those without gravity to the last bit;
-// frames, mirrors and coordinates that must agree; the account of energy; a gas over a thermal floor; what is refused.
+// Gravity: one ball against closed forms (its bounces to the last bit: precision/gravity_test.cpp); columns in free
+// fall, which are those without gravity to the last bit; frames, mirrors and coordinates that must agree; the account
+// of energy; a gas over a thermal floor; what is refused.
 
 #include <algorithm>
 #include <cmath>
@@ -16,41 +17,8 @@
 
 namespace cradle::test::gravity_test {
 
-template <class Run> std::vector<double> times_of(Run& run, double until) {
-  std::vector<double> times;
-  EXPECT_EQ(run.advance(until, [&](const Collision<double>& c) { times.push_back(c.time.value()); }), Status::reached);
-  return times;
-}
-
 // A ball at the height 1, with the acceleration 2, over a floor of the restitution 1/2.
 const Scene<double> soft_floor = between(-2, list<double>({1}, {0}), Wall<double>{0., 0., 0.5});
-
-// From the height 1 with the acceleration 2: at the floor at t = 1, 3, 5 and so on. All numbers are exact.
-TEST(Gravity, ABallBounces) {
-  const Inelastic<double> law(0.5);
-  const auto down = between(-2, list<double>({1}, {0}), Wall<double>{0.});
-  const auto to_right = between(2, list<double>({-1}, {0}), {}, Wall<double>{0.});
-  const auto check = [](auto run, double side) {
-    const std::vector<double> times = times_of(run, 2000.5);
-    ASSERT_EQ(times.size(), 1000U);
-    for (std::size_t n = 0; n < times.size(); ++n) ASSERT_EQ(times[n], 2. * double(n) + 1);
-    const auto c = configuration_at(run, 2000.5);
-    EXPECT_EQ(c.x, std::vector{side * 0.75});
-    EXPECT_EQ(c.v, std::vector{side * -1.});
-    EXPECT_EQ(*c.closure_gap, 0);
-    EXPECT_EQ(sample(run, 0., 2000.5).energy, 0.5);
-    EXPECT_EQ(sample(run, 0., 2000.).energy, 0);
-    EXPECT_EQ(*sample(run, 0., 2000.).front_left, side);
-    EXPECT_EQ(run.energy_lost(), 0);
-  };
-  check(falling(down, law), 1);
-  check(falling(to_right, law), -1);
-  for (const auto& particles : {down, to_right}) {
-    auto run = falling_positions(particles, law);
-    EXPECT_EQ(times_of(run, 2000.5).size(), 1000U);
-    EXPECT_EQ(sample(run, 0., 2000.5).energy, 0.5);
-  }
-}
 
 // With the restitution 1/2 it meets the floor at 3 - 2^(1 - n): in double exactly, while these times are doubles.
 TEST(Gravity, AnInelasticBallCollapsesOnTheFloor) {

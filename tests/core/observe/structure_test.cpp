@@ -1,6 +1,6 @@
 // Structure factors and pair distributions. Proves: sine and cosine to 2^-51, exact at quarters; both measures against
-// sums over all particles and pairs in the plainest way; lattices, two particles, independent places; means over
-// samples with the errors of batch means, from a saved state too.
+// sums over all particles and pairs in the plainest way; lattices, two particles; means over samples with the errors of
+// batch means, from a saved state too.
 #include "cradle/core/observe/structure.hpp"
 
 #include <gtest/gtest.h>
@@ -117,21 +117,6 @@ TEST(PairDistribution, IsThatOfAllPairsOneByOne) {
       // Two points of a line are at a distance r with the density 2 (L - r)/L^2, of a ring with 2/L.
       const double share = farthest / bins * 2 / length * (ring ? 1 : 1 - centres[b] / length);
       EXPECT_NEAR(g[b], count[b] / (60 * 59 / 2 * share), 1e-12 * g[b]) << b;
-    }
-  }
-}
-
-TEST(PairDistribution, IsOneAtIndependentPlaces) {
-  for (const bool ring : {true, false}) {
-    const PairDistribution pairs(ring ? 50 : 60, 10, 100, ring);
-    SampledMeans means(10, 400);
-    for (unsigned k = 0; k < 400; ++k) {
-      const Gas found = gas(100, 100, 100 + k);
-      means.add(pairs(found.now, *found.particles, found.elapsed));
-    }
-    for (const BatchMean& g : means.means()) {
-      EXPECT_NEAR(g.mean, 1, 4 * g.error);
-      EXPECT_LT(g.error, 0.02);
     }
   }
 }

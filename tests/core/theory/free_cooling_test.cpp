@@ -70,33 +70,6 @@ TEST(FreeCooling, WetGasHasTheStickyExponent) {
   EXPECT_THROW(theory::haff_time({}, 1.0), std::domain_error);
 }
 
-// The sum over pairs of |v - v'| is known from N velocities to (2/sqrt N) sqrt(zeta)/mean, zeta = 1/3 + (2 sqrt 3 -
-// 4)/pi and mean = 2/sqrt(pi): 0.715/sqrt(N) (variance of Gini's mean difference). Four of these.
-double four_deviations(double particles) { return 4 * 0.715 / std::sqrt(particles); }
-
-TEST(Collisions, OfAnElasticGasAreExact) {
-  const auto ring = gas(10000, 2);
-  Simulation run(Inelastic<double>(1), GapChain<double>(ring, 0.0));
-  ASSERT_EQ(run.advance(100), Status::reached);
-  // Displaced places on a lattice: 1/4 less for each particle.
-  const double expected = theory::haff_collisions_per_particle({2, .9999}, 1, 100) - 0.25;
-  EXPECT_NEAR(static_cast<double>(run.counts().collisions) / 1e4 / expected, 1, four_deviations(1e4));
-}
-
-// Haff's law has the energy within 3 % until t = tau (above), the rate within half of that; correlations grow up to the
-// time of clustering, where they are of order 1: their share of the collisions until a quarter of it is below 1/16.
-TEST(Collisions, OfACoolingGasFollowHaff) {
-  for (const double restitution : {.99, .9}) {
-    const auto ring = gas(10000, 1);
-    const theory::FreeCooling parameters{1, .9999};
-    const double t = theory::clustering_time(parameters, restitution) / 4;
-    Simulation run(Inelastic<double>(restitution), GapChain<double>(ring, 0.0));
-    ASSERT_EQ(run.advance(t), Status::reached);
-    const double expected = theory::haff_collisions_per_particle(parameters, restitution, t) - 0.25;
-    EXPECT_NEAR(static_cast<double>(run.counts().collisions) / 1e4 / expected, 1, four_deviations(1e4) + 1. / 16);
-  }
-}
-
 // By definition the two energies are equal there, and Haff's is the smaller one just after; without a meeting (eps = 0)
 // the sticky gas is above all along.
 TEST(Collisions, ClusteringIsWhereHaffMeetsTheStickyGas) {

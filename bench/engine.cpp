@@ -51,22 +51,17 @@ template <class Chain> class Cradle {
 using Gaps = Cradle<cradle::GapChain<double>>;
 using Positions = Cradle<cradle::PositionChain<double>>;
 
-// A run in segments and steps (core/parallel/), as programs have it, on so many threads, or cut into so many pieces.
-// The pieces show how evenly as many processors would share the work: `parallel` is the number of collisions of all
-// pieces divided by that of the busiest one, in each time slab.
-template <unsigned threads, unsigned pieces = 0> class InSegments : public Gaps {
+// A run in segments and steps (core/parallel/), as programs have it, on so many threads. `parallel` says how evenly
+// segments share the work: all collisions divided by those of the largest segment, in each time slab.
+template <unsigned threads> class InSegments : public Gaps {
  public:
   InSegments(const ParticlesPointer& particles)
-      : Gaps(particles), executor_(threads), segments_(cradle::workers(executor_), segmentation(*particles)) {}
+      : Gaps(particles), executor_(threads), segments_(cradle::workers(executor_), {.steps = cradle::fastest_steps()}) {
+  }
   void advance(double until) { simulation_.advance(until, segments_); }
   const auto& statistics() const { return segments_.statistics(); }
 
  private:
-  static cradle::Segmentation segmentation(const cradle::Particles<double>& particles) {
-    cradle::Segmentation how{.steps = cradle::fastest_steps()};
-    if (pieces > 0) how.gaps = static_cast<std::size_t>(particles.count()) / pieces;
-    return how;
-  }
   cradle::TbbExecutor executor_;
   cradle::Segments<cradle::Inelastic<double>, cradle::GapChain<double>> segments_;
 };
@@ -136,12 +131,10 @@ void enter_case(const Case& c) {
   enter<Gaps>("cradle_gaps", shared);
   enter<InSegments<1>>("cradle_segments", shared);
   enter<InSegments<2>>("cradle_two_threads", shared);
-  enter<InSegments<1, 16>>("cradle_16_pieces", shared);
   enter<Positions>("cradle_positions", shared);
   enter<Twin<twins::TimeSlotsEngine>>("time_slots", shared);
   enter<WithQueue<twins::TunedHeap>>("tuned_heap", shared);
   enter<WithQueue<twins::IndexedHeap>>("indexed_heap", shared);
-  enter<WithQueue<twins::PriorityQueue>>("priority_queue", shared);
   if (c.small) enter<WithQueue<twins::Scan>>("scan", shared);
 }
 

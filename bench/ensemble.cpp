@@ -1,5 +1,4 @@
-// What an ensemble costs in addition to its runs, what threads gain, and whether it is faster to interleave two
-// replicas collision by collision in one thread than to run one after the other.
+// What an ensemble costs in addition to its runs, and what threads gain.
 //
 //   cmake --preset release && cmake --build --preset release --target bench_ensemble
 //   build/release/bench/bench_ensemble --benchmark_enable_random_interleaving=true --benchmark_repetitions=5
@@ -10,7 +9,6 @@
 //
 // runs          as `cradle run` makes them, one after the other; results are dropped
 // ensemble/T    as `cradle ensemble --threads T`: journal, statistics, file
-// in_turn, interleaved   engines without samples
 //
 // small/N   a ring of N particles, Gaussian velocities, restitution 0.9, cut-off 1e-6, to t = 10: the column "each" is
 //           the processor time of a replica (--benchmark_filter=small)
@@ -32,11 +30,9 @@
 #include <vector>
 
 #include "cradle/core/base/counter_rng.hpp"
-#include "cradle/core/chains/cluster_chain.hpp"
 #include "cradle/core/chains/gap_chain.hpp"
 #include "cradle/core/engine/simulation.hpp"
 #include "cradle/core/initial/gas.hpp"
-#include "cradle/core/initial/rows.hpp"
 #include "cradle/tools/ensemble/ensemble.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
 #include "measured.hpp"
@@ -76,44 +72,6 @@ void enter_scene(const std::string& of, const tools::Scene& scene, int replicas)
   });
   for (const unsigned threads : {1U, 2U})
     enter(of + "/ensemble/" + std::to_string(threads), replicas, [=] { run_ensemble(scene, replicas, threads); });
-}
-
-// ---- engines
-
-std::shared_ptr<const cradle::Particles<double>> rows(cradle::ParticleIndex particles, int replica) {
-  const auto displacement = cradle::uniform_displacement(0.05, 1, static_cast<std::uint64_t>(replica));
-  return std::make_shared<cradle::Rows<double>>(cradle::symmetric_rows(particles, 0.5, 1.0, displacement));
-}
-
-template <class Make> void enter_engine(const std::string& of, int replicas, double until, Make make) {
-  const auto lost = std::make_shared<double>(0);  // of all replicas: its bits do not depend on the order
-  const auto check = [=](double sum) {
-    if (*lost == 0) *lost = sum;
-    if (*lost == sum) return;
-    std::fprintf(stderr, "%s: replicas differ when interleaved: times mean nothing\n", of.c_str());
-    std::exit(1);
-  };
-  enter(of + "/in_turn", replicas, [=] {
-    double sum = 0;
-    for (int k = 0; k < replicas; ++k) {
-      auto one = make(k);
-      one.advance(until);
-      sum += one.energy_lost();
-    }
-    check(sum);
-  });
-  enter(of + "/interleaved", replicas, [=] {
-    double sum = 0;
-    for (int k = 0; k < replicas; k += 2) {
-      auto a = make(k), b = make(k + 1);
-      a.head_for(until), b.head_for(until);
-      while (a.step() && b.step()) continue;
-      a.advance(until), b.advance(until);
-      sum += a.energy_lost();
-      sum += b.energy_lost();
-    }
-    check(sum);
-  });
 }
 
 // ---- many small systems
@@ -207,13 +165,6 @@ void enter_all() {
       "fig2", {"run.until=4000", "output.series.points=101", "output.snapshots=", "output.profiles.times="});
   enter_scene("wet", wet, 8000);
   enter_scene("dry", dry, 8);
-  enter_engine("wet", 400, 9900, [](int replica) {
-    return cradle::Simulation(cradle::Wet<double>(0.05), cradle::ClusterChain<double>(rows(10'000, replica), 0.0));
-  });
-  enter_engine("dry", 4, 4000, [](int replica) {
-    return cradle::Simulation(cradle::Inelastic<double>(0.999, 1e-5),
-                              cradle::GapChain<double>(rows(8000, replica), 0.0));
-  });
   for (const int n : {3, 10, 30, 100, 1000}) enter_small(n);
 }
 

@@ -16,6 +16,5 @@ template <class Queue> void QueueEngine<Queue>::advance(double until) {
 template class QueueEngine<Scan>;
 template class QueueEngine<IndexedHeap>;
 template class QueueEngine<TunedHeap>;
-template class QueueEngine<PriorityQueue>;
 
 }  // namespace twins

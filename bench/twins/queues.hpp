@@ -4,7 +4,6 @@
 // decrease key). There are no stale events, and the heap never grows.
 
 #include <algorithm>
-#include <queue>
 #include <utility>
 
 #include "line.hpp"
@@ -28,35 +27,6 @@ class Scan {
 
  private:
   std::vector<double> due_;
-};
-
-// That of textbooks: predictions are put into a std::priority_queue and stay there. A collision invalidates those for
-// the gaps beside it. Such stale events are recognised by the number of predictions that their gap had by then, and are
-// skipped when they come to the top.
-class PriorityQueue {
- public:
-  explicit PriorityQueue(const std::vector<double>& due) : had_(due.size()) {
-    for (std::uint32_t i = 0; i < due.size(); ++i) update(i, due[i]);
-  }
-
-  Event first() {
-    while (!events_.empty() && events_.top().had != had_[events_.top().gap]) events_.pop();
-    return events_.empty() ? Event{never, 0} : Event(events_.top());
-  }
-
-  void update(std::uint32_t gap, double time) {
-    ++had_[gap];
-    if (time < never) events_.push({{time, gap}, had_[gap]});
-  }
-
- private:
-  struct Prediction : Event {
-    std::uint32_t had;
-    bool operator>(const Prediction& other) const { return time > other.time; }
-  };
-
-  std::vector<std::uint32_t> had_;  // predictions for each gap until now
-  std::priority_queue<Prediction, std::vector<Prediction>, std::greater<>> events_;
 };
 
 // The layout is that of textbooks: gaps in heap order, the place of each gap, the key of each gap.

@@ -1,6 +1,7 @@
 #pragma once
-// Cases in a text file: some lines each, with an empty line between them. `# ...` is a comment. `@name` stands for the
-// lines of that name, which `@name =` begins and an empty line ends, or for the bundled scene of that name.
+// Cases in a text file: some lines each, with an empty line between them. `# ...` is a comment; `## NAME` begins a
+// group of cases. `@name` stands for the lines of that name, which `@name =` begins and an empty line ends, or for the
+// bundled scene of that name. A line that ends in a backslash continues in the next one.
 
 #include <algorithm>
 #include <map>
@@ -14,6 +15,7 @@ namespace cradle::tests {
 using Lines = std::vector<std::string>;
 
 struct ListedCase {
+  std::string group;
   std::size_t number;  // of its first line
   Lines lines;
 
@@ -30,15 +32,21 @@ inline std::vector<ListedCase> cases_in(const std::string& name) {
     texts["@" + std::string(scene.name)] = {std::string(scene.text)};
   std::istringstream file(contents(test::source_folder + "/tests/tools/" + name));
   std::vector<ListedCase> all;
+  std::string group;
   Lines* open = nullptr;  // of a case or of a text
-  std::size_t number = 1;
-  for (std::string line; std::getline(file, line); ++number) {
+  std::size_t number = 0;
+  for (std::string line; std::getline(file, line);) {
+    const std::size_t first = ++number;
+    for (std::string more; line.ends_with(" \\") && std::getline(file, more); ++number)
+      line.replace(line.size() - 1, 1, more.substr(more.find_first_not_of(' ')));
     if (line.empty()) {
       open = nullptr;
+    } else if (line.starts_with("## ")) {
+      group = line.substr(3);
     } else if (line.starts_with('@') && line.ends_with(" =")) {
-      open = &texts[line.substr(0, line.size() - 2)];
+      open = &(texts[line.substr(0, line.size() - 2)] = {});
     } else if (!line.starts_with('#')) {
-      if (open == nullptr) open = &all.emplace_back(ListedCase{number, {}}).lines;
+      if (open == nullptr) open = &all.emplace_back(ListedCase{group, first, {}}).lines;
       if (line.starts_with('@'))
         std::ranges::copy(texts.at(line), std::back_inserter(*open));
       else

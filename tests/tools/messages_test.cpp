@@ -2,18 +2,13 @@
 // left behind. Commands print what stands in outputs.txt. Keys, commands and options that messages and help name exist:
 // every key is in the table of keys, every command is one of the program's, and its options are options of that
 // command.
-#include <algorithm>
-#include <map>
-#include <sstream>
-
-#include "cradle/tests/tools/program.hpp"
+#include "cradle/tests/tools/cases.hpp"
 #include "cradle/tools/setup/list_file.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
 
 namespace cradle::tests::messages_test {
 
 using Names = std::set<std::string>;
-using Lines = std::vector<std::string>;
 
 struct Command {
   std::string typed;
@@ -22,7 +17,7 @@ struct Command {
 };
 
 struct Input {
-  std::size_t line;  // of the table
+  std::size_t line;  // of the table, its first one
   std::map<std::string, Lines> files;
   Lines settings;
   std::vector<Command> commands;
@@ -43,91 +38,51 @@ struct Inputs {
 
 void PrintTo(const Inputs& inputs, std::ostream* stream) { *stream << inputs.name; }
 
-// Reads messages.txt or outputs.txt, whose heads describe their form.
-class Table {
- public:
-  explicit Table(const std::string& name) {
-    std::ifstream file(test::source_folder + "/tests/tools/" + name);
-    Lines input;
-    for (std::string text; next(file, text);) {
-      if (text.starts_with("## ")) {
-        groups.push_back({text.substr(3), {}});
-      } else if (text.starts_with("=>")) {
-        add(input, text), input.clear();
-        for (const std::string& more : until_blank(file)) groups.back().all.back().message += more.substr(2);
-      } else if (text.empty() && std::ranges::any_of(input, is_command)) {
-        add(input, "=> [0]"), input.clear();
-      } else if (text.starts_with('@') && text.ends_with(" =")) {
-        texts_[text.substr(0, text.size() - 2)] = until_blank(file);
-      } else if (!input.empty() || !(text.empty() || text.starts_with('#'))) {
-        input.push_back(text);
-      }
-    }
-    if (std::ranges::any_of(input, is_command))
-      add(input, "=> [0]");
-    else if (!input.empty())
-      throw std::logic_error(name + " ends in an input without an answer");
-  }
-  std::vector<Inputs> groups;
-
- private:
-  static bool is_command(const std::string& line) { return line.starts_with("$ "); }
-  // A line that ends in a backslash continues in the next one.
-  bool next(std::istream& file, std::string& text) {
-    ++line_;
-    if (!std::getline(file, text)) return false;
-    for (std::string more; text.ends_with(" \\") && std::getline(file, more); ++line_)
-      text.replace(text.size() - 1, 1, more.substr(more.find_first_not_of(' ')));
-    return true;
-  }
-  Lines until_blank(std::istream& file) {
-    Lines lines;
-    for (std::string text; next(file, text) && !text.empty();) lines.push_back(text);
-    return lines;
-  }
-  Lines with_texts(const Lines& lines) const {
-    Lines whole;
-    for (const std::string& line : lines)
-      if (line.starts_with('@'))
-        std::ranges::copy(with_texts(texts_.at(line)), std::back_inserter(whole));
-      else
-        whole.push_back(line);
-    return whole;
-  }
-
-  void add(const Lines& lines, const std::string& answer) {
-    static const std::regex form("=>(?: \\[([0-9])\\])?(?: (.*))?"), replacement("([0-9]+): ?(.*)"),
-        command("\\$ (?:\\[([0-9]+)\\] )?(.*)");
+// Of a case of messages.txt or outputs.txt, whose heads describe their form.
+Input input_of(const ListedCase& listed) {
+  static const std::regex answer("=>(?: \\[([0-9])\\])?(?: (.*))?"), replacement("([0-9]+): ?(.*)"),
+      command("\\$ (?:\\[([0-9]+)\\] )?(.*)");
+  Input input{listed.number, {}, {}, {}, {}, 0};
+  std::string name = "s.toml";
+  std::set<std::size_t> replaced;
+  bool answered = false;
+  for (const std::string& line : listed.lines) {
     std::smatch match;
-    std::regex_match(answer, match, form);
-    Input input{line_, {}, {}, {}, match[2], match[1].matched ? std::stoi(match[1]) : 2};
-    std::string name = "s.toml";
-    std::set<std::size_t> replaced;
-    for (const std::string& line : with_texts(lines)) {
-      if (std::regex_match(line, match, command)) {
-        input.commands.push_back({match[2], match[1].matched ? std::stoi(match[1]) : 0, {}});
-      } else if (!input.commands.empty()) {
-        input.commands.back().printed.push_back(line);
-      } else if (line.starts_with("--- ")) {
-        input.files[name = line.substr(4)];
-      } else if (line.starts_with("--set ")) {
-        std::istringstream words(line);
-        std::copy_if(std::istream_iterator<std::string>(words), {}, std::back_inserter(input.settings),
-                     [](const std::string& word) { return word != "--set"; });
-      } else if (std::regex_match(line, match, replacement)) {
-        const std::size_t number = std::stoul(match[1]);
-        std::string& of_scene = input.files.at(name).at(number - 1);
-        of_scene = (replaced.insert(number).second ? "" : of_scene + "\n") + match[2].str();
-      } else {
-        input.files[name].push_back(line);
-      }
+    if (answered) {
+      input.message += line.substr(2);
+    } else if (std::regex_match(line, match, answer)) {
+      answered = true, input.message = match[2], input.status = match[1].matched ? std::stoi(match[1]) : 2;
+    } else if (std::regex_match(line, match, command)) {
+      input.commands.push_back({match[2], match[1].matched ? std::stoi(match[1]) : 0, {}});
+    } else if (!input.commands.empty()) {
+      input.commands.back().printed.push_back(line);
+    } else if (line.starts_with("--- ")) {
+      input.files[name = line.substr(4)];
+    } else if (line.starts_with("--set ")) {
+      std::istringstream words(line);
+      std::copy_if(std::istream_iterator<std::string>(words), {}, std::back_inserter(input.settings),
+                   [](const std::string& word) { return word != "--set"; });
+    } else if (std::regex_match(line, match, replacement)) {
+      const std::size_t number = std::stoul(match[1]);
+      std::string& of_scene = input.files.at(name).at(number - 1);
+      of_scene = (replaced.insert(number).second ? "" : of_scene + "\n") + match[2].str();
+    } else {
+      input.files[name].push_back(line);
     }
-    groups.back().all.push_back(std::move(input));
   }
+  if (!answered && input.commands.empty())
+    throw std::logic_error(fmt::format("{}, line {}: no answer", listed.group, listed.number));
+  return input;
+}
 
-  std::size_t line_ = 0;
-  std::map<std::string, Lines> texts_;
-};
+std::vector<Inputs> inputs_in(const std::string& file) {
+  std::vector<Inputs> groups;
+  for (const ListedCase& listed : cases_in(file)) {
+    if (groups.empty() || groups.back().name != listed.group) groups.push_back({listed.group, {}});
+    groups.back().all.push_back(input_of(listed));
+  }
+  return groups;
+}
 
 class Answers : public ProgramTest, public testing::WithParamInterface<Inputs> {
  protected:
@@ -206,9 +161,9 @@ TEST_P(Answers, AreThoseOfTheTable) {
 }
 
 constexpr auto name_of = [](const auto& inputs) { return inputs.param.name; };
-INSTANTIATE_TEST_SUITE_P(Input, Answers, testing::ValuesIn(Table("messages.txt").groups), name_of);
-INSTANTIATE_TEST_SUITE_P(Output, Answers, testing::ValuesIn(Table("outputs.txt").groups), name_of);
-INSTANTIATE_TEST_SUITE_P(OutputOfRuns, Answers, testing::ValuesIn(Table("run/outputs.txt").groups), name_of);
+INSTANTIATE_TEST_SUITE_P(Input, Answers, testing::ValuesIn(inputs_in("messages.txt")), name_of);
+INSTANTIATE_TEST_SUITE_P(Output, Answers, testing::ValuesIn(inputs_in("outputs.txt")), name_of);
+INSTANTIATE_TEST_SUITE_P(OutputOfRuns, Answers, testing::ValuesIn(inputs_in("run/outputs.txt")), name_of);
 
 // The texts between quotes in a source of the program, those that follow each other as one.
 std::string texts(const std::string& source) {

@@ -3,6 +3,7 @@
 #include "cradle/core/initial/cold.hpp"
 #include "cradle/core/initial/gas.hpp"
 #include "cradle/core/initial/poisson.hpp"
+#include "cradle/core/initial/rows.hpp"
 #include "cradle/tests/precision/every_scalar.hpp"
 
 namespace cradle::test::random_states_test {
@@ -14,6 +15,7 @@ template <class T> std::vector<std::shared_ptr<const Particles<T>>> states() {
   const auto middle = [](ParticleIndex p) { return 2 * (p - 150); };
   const Displacement places = uniform_places(count, 6, 2),
                      outwards = poisson_displacement(count, 150, true, middle, 6, 2);
+  const auto around = [](ParticleIndex p) { return 2 * (p - 150) + (p < 150 ? 1 : -1); };
   const VelocityDraw velocity = gaussian_velocity(6, 2);
   const T third = T(1) / T(3), length = T(1000) / T(7);
   const auto cold = [&](double falls) {
@@ -21,7 +23,13 @@ template <class T> std::vector<std::shared_ptr<const Particles<T>>> states() {
                                      masses, falls);
   };
   return {std::make_shared<cradle::Gas<T>>(count, T(-third), length, third, velocity, places, masses),
-          std::make_shared<Ring<T>>(count, length, third, velocity, places, masses), cold(0), cold(0.6), cold(-0.5)};
+          std::make_shared<Ring<T>>(count, length, third, velocity, places, masses),
+          std::make_shared<Rows<T>>(Row<T>{150, third, third}, Row<T>{150, T(-third), T(T(1) / T(7))},
+                                    CentralParticle<T>{third, T(0)},
+                                    poisson_displacement(count, 150, true, around, 6, 2), masses),
+          cold(0),
+          cold(0.6),
+          cold(-0.5)};
 }
 
 template <class P> class RandomStates : public InPrecision<P> {};

@@ -101,13 +101,6 @@ class ProgramTest : public testing::Test {
       use(read("wide.h5"));
     }
   }
-  // The command's file has the same bytes on any number of threads; it is left as 1.h5.
-  void expect_same_on_threads(const std::string& command) const {
-    for (const std::string threads : {"1", "2", "3", "8"}) {
-      shell(command + " --quiet --force --threads " + threads + " -o " + threads + ".h5", 0);
-      expect_same("1.h5", threads + ".h5");
-    }
-  }
 
   std::filesystem::path folder;
 };

@@ -50,6 +50,27 @@ output.profiles = { times = [300], bins = 10, range = [-20, 20] }
 output.zone = { from = 200, samples = 16, bins = 8 }
 )";
 
+// A gas that falls between a hot wall and a shaken one, with all measurements.
+inline constexpr const char* falling = R"(
+law = { type = "inelastic", restitution = 0.95, cutoff = 0.1 }
+initial = { type = "gas", particles = 50, perturbation = 0.2 }
+gravity.acceleration = -0.1
+walls.left.temperature = 2
+walls.right = { motion = "sine", amplitude = 0.25, frequency = 3, restitution = 0.9 }
+run.until = 8
+[output]
+series = { points = 3 }
+snapshots = [4]
+every_replica = true
+profiles = { times = [4], bins = 10, range = [0, 50] }
+averages = { every = 0.2, bins = 7, range = [0, 50] }
+histograms = ["free_flight", "closing_speed", "dissipative_closing_speed", "collisions_per_particle", "gap", "cluster"]
+correlations = { every = 0.25 }
+structure = { every = 2, times = [1, 7], waves = 20 }
+pair_distribution = { every = 2, times = [1, 7], distance = 3 }
+counting = { from = 2, until = 7, every = 2.5, cluster_gap = 0.1 }
+)";
+
 constexpr std::uint64_t endless_replicas = 1'000'000'000'000;
 
 class Ensembles : public ProgramTest {
@@ -58,6 +79,7 @@ class Ensembles : public ProgramTest {
     write("wet.toml", wet);
     write("shock.toml", shock);
     write("collapse.toml", collapse);
+    write("falling.toml", falling);
   }
 
   Scene scene(const std::string& name) const { return tools::read_scene(path(name)); }

@@ -11,6 +11,7 @@ TEST_F(Ensembles, SameBytesForAnyHistory) {
   expect_same_for_any_history("ensemble shock.toml --spread energy=0:40:4000 --spread profiles/0000/density=0:4:8", 25);
   expect_same_for_any_history("ensemble shock.toml --set output.every_replica=true", 12);
   expect_same_for_any_history("ensemble collapse.toml", 40);
+  expect_same_for_any_history("ensemble falling.toml", 30);
   for (const std::string precision : {"'long double'", "double-double", "cpp_bin_float", "mpfr --set run.digits=40"})
     expect_same_for_any_history("ensemble shock.toml --set initial.particles=60 --set run.until=50 --set "
                                 "output.profiles.times=[] --set run.precision=" +

@@ -1,7 +1,8 @@
 // What is measured during a run. Proves: heat flux, collision rate and closing speeds of gases whose exact
 // values are known, within 4 standard errors over replicas, and the diffusion of tagged particles; accounts of walls
-// that balance; the same bytes on any number of threads and ranks, in segments and out of them, and nearly the same
-// numbers in every scalar type. Checkpoints: tools/store/resume_test. Scenes that are refused: tools/messages.txt.
+// that balance; nearly the same numbers in every scalar type. (The same bytes on any number of threads, in segments and
+// out of them: tools/run/outputs.txt; in ensembles: tools/ensemble. Checkpoints: tools/store/resume_test. Scenes that
+// are refused: tools/messages.txt.)
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -188,76 +189,6 @@ pair_distribution = { every = 1, times = [3], distance = 20, bins = 8 }
       for (std::size_t k = 0; k < a.size(); ++k) EXPECT_NEAR(a[k], b[k], 1e-9 * (1 + a[k])) << group << " " << k;
     }
   });
-}
-
-const std::string places = "[output]\nseries.points = 3\nstructure = { every = 2, times = [1, 7], waves = 20 }\n"
-                           "pair_distribution = { every = 2, times = [1, 7], distance = 3 }\n",
-                  measured = places +
-                             "averages = { every = 0.2, bins = 7, range = [0, 4000] }\nhistograms = ['free_flight', "
-                             "'closing_speed', 'dissipative_closing_speed', 'collisions_per_particle', 'gap', "
-                             "'cluster']\ncounting = { from = 2, until = 7, every = 2.5, cluster_gap = 0.1 }\n";
-
-// With an account of either wall.
-std::string between_walls(int particles) {
-  return fmt::format("law = {{ type = 'inelastic', restitution = 0.95, cutoff = 0.1 }}\n"
-                     "walls = {{ left.temperature = 2, right.restitution = 0.9 }}\nrun.until = 8\n"
-                     "initial = {{ type = 'gas', particles = {}, perturbation = 0.2 }}\n",
-                     particles);
-}
-
-TEST_F(Measuring, HasTheSameBytesOnAnyNumberOfThreads) {
-  const std::string ring = "initial = { type = 'ring', particles = 4000, perturbation = 0.2 }\nrun.until = 8\n";
-  write("dry.toml", "law = { type = 'inelastic', restitution = 0.95, cutoff = 0.1 }\n" + ring + measured +
-                        "correlations = { every = 0.25, tag_every = 3 }\n");
-  write("wet.toml", "law = { type = 'wet', loss = 0.01 }\n" + ring + measured);
-  write("walls.toml", between_walls(4000) + measured);
-  for (const std::string scene : {"dry", "wet", "walls"})
-    for (const std::string precision : {"double", "double-double"}) {
-      SCOPED_TRACE(scene + " in " + precision);
-      const std::string run = "cradle run " + scene + ".toml --set run.precision=" + precision;
-      expect_same_on_threads(run);
-      // With so many samples the plain loop makes all collisions.
-      shell(run + " --quiet --force --set output.series.points=3000 -o plain.h5", 0);
-      const Result found = read("1.h5"), wanted = read("plain.h5");
-      for (const tools::Group& group : wanted.groups) {
-        if (group.name.ends_with("series")) continue;
-        for (const tools::Column& c : group.columns)
-          EXPECT_TRUE(column(found, group.name, c.name).values == c.values) << group.name << "/" << c.name;
-      }
-    }
-}
-
-TEST_F(Measuring, InEnsemblesHasTheSameBytesOnThreadsAndRanks) {
-  write("ring.toml", "law = { type = 'inelastic', restitution = 0.9, cutoff = 1e-3 }\nrun.until = 8\n"
-                     "initial = { type = 'ring', particles = 50, perturbation = 0.4 }\n" +
-                         places + "correlations.every = 0.25\n");
-  write("gas.toml", between_walls(50) + measured +
-                        "correlations.every = 0.25\nevery_replica = true\nsnapshots = [4]\n"
-                        "profiles = { times = [4], range = [0, 50] }\n");
-  for (const std::string scene : {"gas", "ring"}) {
-    SCOPED_TRACE(scene);
-    const std::string ensemble = "ensemble " + scene + ".toml --quiet --force";
-    expect_same_on_threads("cradle ensemble " + scene + ".toml --replicas 30");
-    // Replicas from two files are those of one.
-    shell("cradle " + ensemble + " --replicas 30 --first 30 -o later.h5", 0);
-    shell("cradle merge 1.h5 later.h5 --force -o merged.h5", 0);
-    shell("cradle " + ensemble + " --replicas 60 -o whole.h5", 0);
-    expect_same("merged.h5", "whole.h5");
-#ifdef CRADLE_WITH_MPI
-    if (shell("command -v mpirun").status == 0) {
-      shell(on_ranks(2, "cradle " + ensemble + " --replicas 30 --threads 1 -o ranks.h5"), 0);
-      expect_same("1.h5", "ranks.h5");
-    }
-#endif
-  }
-  const Result found = read("1.h5");
-  for (const auto& [group, name] : of_particles)
-    for (const double error : numbers(found, fmt::format("ensemble/{}/{}", group, name), "sem"))
-      EXPECT_GE(error, 0) << group;
-  for (const char* later : {"ensemble/structure/0001/s", "ensemble/pair_distribution/0001/pair_distribution"})
-    for (const double error : numbers(found, later, "sem")) EXPECT_GE(error, 0) << later;
-  EXPECT_EQ(numbers(found, "ensemble/correlations", "lag")[3], 0.75);
-  EXPECT_EQ(found.find("ensemble/structure_average/s_sem"), nullptr);
 }
 
 }  // namespace cradle::tests::measured_test

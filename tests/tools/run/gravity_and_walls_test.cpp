@@ -1,8 +1,6 @@
-// Gravity and shaken walls in scenes: the account of energy in a result, with balls that rest on a floor; the same bits
-// from a checkpoint and on any number of threads; all types make the same collisions; ensembles; a column in free fall
-// is that without gravity. (Bad input: tests/tools/messages.txt.)
+// Gravity and shaken walls in scenes: the account of energy in a result, with balls that rest on a floor. (The same
+// bits on any number of threads, free fall: tests/tools/run/outputs.txt. Bad input: tests/tools/messages.txt.)
 #include <cmath>
-#include <tuple>
 
 #include "cradle/tests/tools/program.hpp"
 
@@ -56,22 +54,6 @@ TEST_F(GravityAndWalls, TheAccountOfEnergyBalances) {
   }
 }
 
-TEST_F(GravityAndWalls, AColumnInFreeFallHasTheGapsOfOneAtRest) {
-  const std::string rows = law + "initial = { type = 'rows', particles = 200, perturbation = 0.1 }\nrun.until = 60\n"
-                                 "output = { series.points = 7, snapshots = [60] }\n";
-  const Result rest = result_of(rows), fall = result_of(rows + "gravity.acceleration = -3\n"),
-               none = result_of(rows + "gravity.acceleration = 0\n");
-  for (const char* name : {"gap", "closing_speed"}) {
-    EXPECT_EQ(numbers(fall, "snapshots/0000", name), numbers(rest, "snapshots/0000", name));
-    EXPECT_EQ(numbers(none, "snapshots/0000", name), numbers(rest, "snapshots/0000", name));
-  }
-  EXPECT_EQ(numbers<std::uint64_t>(fall, "series", "collisions"), numbers<std::uint64_t>(rest, "series", "collisions"));
-  const auto x = numbers(fall, "snapshots/0000", "x"), still = numbers(rest, "snapshots/0000", "x");
-  for (std::size_t k = 0; k < x.size(); ++k) EXPECT_NEAR(x[k], still[k] - 1.5 * 3600, 1e-11);
-  EXPECT_EQ(numbers(none, "series", "energy"), numbers(rest, "series", "energy"));
-  for (const tools::Column& column : none.find("series")->columns) EXPECT_FALSE(has(column.name, "potential"));
-}
-
 // x(t) = A sin(omega t + phi) in [-A, A] at a sample of the wall's own particle: one that rests on it.
 TEST_F(GravityAndWalls, ABallAtRestHasTheMotionOfTheFloor) {
   const Result result = result_of(law + ball + "gravity.acceleration = -4\n" +  // A omega^2 = 2.25 < 4
@@ -79,45 +61,6 @@ TEST_F(GravityAndWalls, ABallAtRestHasTheMotionOfTheFloor) {
   EXPECT_NEAR(numbers(result, "snapshots/0002", "x").back(), 0.25 * std::sin(36.5), 1e-14);
   EXPECT_NEAR(numbers(result, "snapshots/0002", "v").back(), 0.75 * std::cos(36.5), 1e-14);
   EXPECT_LT(numbers<std::uint64_t>(result, "series", "collisions").back(), 20U);
-}
-
-TEST_F(GravityAndWalls, TheSameBitsFromACheckpointAndOnAnyNumberOfThreads) {
-  write("scene.toml", between);
-  expect_same_on_threads("cradle run scene.toml --set initial.particles=3000 --set run.until=2");
-  for (const std::string& floor : {floor_of("sawtooth"), floor_of("parabola"), floor_of("sine"),
-                                   floor_of("sine", "restitution = 0.9, rest_speed = 0.1")}) {
-    write("scene.toml", shaken(floor));
-    expect_same_on_threads("cradle run scene.toml");
-    result_of(shaken(floor), "--set run.until=5 --set output.snapshots=[0,3]");
-    shell("cradle resume result.h5 --until 12 --quiet", 0);
-    EXPECT_EQ(numbers(read("result.h5"), "events", "time"), numbers(read("1.h5"), "events", "time"));
-  }
-}
-
-TEST_F(GravityAndWalls, TheSameCollisionsInEveryPrecision) {
-  for (const std::string& scene : {falling, shaken(floor_of("sine"))}) {
-    const std::string options = "--set run.until=6 --set output.snapshots=[6]";
-    const Result of_double = result_of(scene, options);
-    in_wide_types(scene, options, [&](const Result& wide) {
-      EXPECT_EQ(numbers<std::uint64_t>(wide, "events", "left"), numbers<std::uint64_t>(of_double, "events", "left"));
-      const auto x = numbers(wide, "snapshots/0000", "x"), wanted = numbers(of_double, "snapshots/0000", "x");
-      for (std::size_t k = 0; k < x.size(); ++k) EXPECT_NEAR(x[k], wanted[k], 1e-12);
-    });
-  }
-}
-
-TEST_F(GravityAndWalls, Ensembles) {
-  const std::string gas = law + "initial = { type = 'gas', particles = 40 }\nrun.until = 6\noutput.series.points = 7\n"
-                                "walls.right = { motion = 'sine', amplitude = 0.25, frequency = 3 }\n";
-  for (const auto& [scene, name, replicas] :
-       {std::tuple(between, "potential_energy", 3), std::tuple(gas, "wall_right_energy", 2)}) {
-    double sum = 0;
-    for (int k = 0; k < replicas; ++k)
-      sum += numbers(result_of(scene, "--set initial.replica=" + std::to_string(k)), "series", name).back();
-    shell("cradle ensemble scene.toml --quiet --force -o e.h5 --replicas " + std::to_string(replicas), 0);
-    const auto mean = numbers(read("e.h5"), "ensemble/series/" + std::string(name), "mean");
-    EXPECT_NEAR(mean.back(), sum / replicas, 1e-12 * std::abs(sum));
-  }
 }
 
 }  // namespace cradle::tests::gravity_and_walls_test

@@ -220,22 +220,26 @@ TEST(TouchingParticles, AreGivenADistanceInstead) {
   }
 }
 
-// A run that is continued nine times from a file of its last state: gaps and closing speeds are read, not differences
-// of positions, which do not resolve a collapse.
+// A run that is continued from files of its last state: gaps and closing speeds are read, not differences of positions,
+// which do not resolve a collapse.
 class Continued : public tests::ProgramTest {
  protected:
-  // `initial` begins with the table's other keys.
   Collisions collisions(const std::string& common, const std::string& initial, const std::string& start,
                         const std::string& until, const std::string& result) {
-    write("scene.toml", common + "output = { events = true, series.points = 2, snapshots = [" + until +
-                            "] }\n[run]\nstart = " + start + "\nuntil = " + until + "\n[initial]\ntype = 'list'\n" +
-                            initial);
+    write("scene.toml",
+          fmt::format(
+              "{}run.start = {}\nrun.until = {}\noutput = {{ events = true, series.points = 2, snapshots = [{}] }}"
+              "\n[initial]\n{}",
+              common, start, until, until, initial));
     shell("cradle run scene.toml --quiet -o " + result, 0);
     return collisions_of(read(result));
   }
 
+  // The columns at the end differ by `bound(x, roundings)` at most, of a number x and what all collisions have rounded.
+  template <class Bound>
   void has_the_collisions_of_one_run(const std::string& common, const std::string& initial,
-                                     const std::vector<std::string>& times, double collapse = 0) {
+                                     const std::vector<std::string>& times, const std::vector<std::string>& columns,
+                                     const Bound& bound) {
     const Collisions whole = collisions(common, initial, "0", times.back(), "whole.h5");
     Collisions pieces;
     std::string start = "0", from = initial;
@@ -243,40 +247,57 @@ class Continued : public tests::ProgramTest {
       const std::string result = fmt::format("{}.h5", k);
       const Collisions piece = collisions(common, from, start, times[k], result);
       pieces.insert(pieces.end(), piece.begin(), piece.end());
-      start = times[k], from = "file = '" + result + "'\n";
+      start = times[k], from = "type = 'list'\nfile = '" + result + "'\n";
     }
     EXPECT_EQ(pieces, whole);
     EXPECT_GT(whole.size(), times.size());
-    const auto at_end = tests::numbers(read("whole.h5"), "snapshots/0000", "gap"),
-               in_pieces = tests::numbers(read(fmt::format("{}.h5", times.size() - 1)), "snapshots/0000", "gap");
-    ASSERT_EQ(at_end.size(), in_pieces.size());
-    // Each rounding moves a collapse by some units of the last place, and all gaps there are shorter by that. Elsewhere
-    // it is as tools/proof/agreement.hpp says, with speeds of at most 2 and a length of 5.
-    const double end = std::stod(times.back()), eps = std::numeric_limits<double>::epsilon(),
-                 roundings = 8 * eps * static_cast<double>(whole.size() + at_end.size() + 64);
-    for (std::size_t i = 0; i < at_end.size(); ++i)
-      if (!std::isnan(at_end[i])) {
-        EXPECT_NEAR(in_pieces[i], at_end[i],
-                    collapse > 0 ? roundings * collapse / (collapse - end) * at_end[i] : roundings * (5 + 2 * end))
-            << i;
-      }
+    for (const std::string& column : columns) {
+      const auto at_end = tests::numbers(read("whole.h5"), "snapshots/0000", column),
+                 in_pieces = tests::numbers(read(fmt::format("{}.h5", times.size() - 1)), "snapshots/0000", column);
+      ASSERT_EQ(at_end.size(), in_pieces.size());
+      const double eps = std::numeric_limits<double>::epsilon(),
+                   roundings = 8 * eps * static_cast<double>(whole.size() + at_end.size() + 64);
+      for (std::size_t i = 0; i < at_end.size(); ++i)
+        if (!std::isnan(at_end[i])) {
+          EXPECT_NEAR(in_pieces[i], at_end[i], bound(at_end[i], roundings)) << column << ' ' << i;
+        }
+    }
   }
 };
 
-// r = 0.05: the collapse is at 12/7 = 1.714285714...; a gap shrinks by 1/8 from one collision to the next.
+// r = 0.05: the collapse is at 12/7 = 1.714285714...; a gap shrinks by 1/8 from one collision to the next. Each
+// rounding moves the collapse by some units of the last place, and all gaps are shorter by that.
 TEST_F(Continued, CollapseHasTheCollisionsOfOneRun) {
-  std::vector<std::string> times = {
+  const std::vector<std::string> times = {
       "1",         "1.5",         "1.7",           "1.714",           "1.71428",
       "1.7142857", "1.714285714", "1.71428571428", "1.7142857142857", "1.714285714285713"};
-  has_the_collisions_of_one_run("law = { type = 'inelastic', restitution = 0.05 }\n", "x = [0, 1, 3]\nv = [1, 0, -1]\n",
-                                times, 12. / 7);
+  const double collapse = 12. / 7, end = std::stod(times.back());
+  has_the_collisions_of_one_run(
+      "law = { type = 'inelastic', restitution = 0.05 }\n", "type = 'list'\nx = [0, 1, 3]\nv = [1, 0, -1]\n", times,
+      {"gap"}, [=](double gap, double roundings) { return roundings * collapse / (collapse - end) * gap; });
 }
 
+// The bound is that of tools/proof/agreement.hpp, with speeds of at most 2 and a length of 5.
 TEST_F(Continued, RingHasTheCollisionsOfOneRun) {
   std::vector<std::string> times;
   for (int k = 1; k <= 10; ++k) times.push_back(fmt::format("{}", 12 * k));
-  has_the_collisions_of_one_run("law = { type = 'inelastic', restitution = 0.9 }\n",
-                                "x = [0, 0.9, 2.3, 3.1, 4.4]\nv = [1, -0.3, 0.8, -1.7, 0.2]\nlength = 5\n", times);
+  has_the_collisions_of_one_run(
+      "law = { type = 'inelastic', restitution = 0.9 }\n",
+      "type = 'list'\nx = [0, 0.9, 2.3, 3.1, 4.4]\nv = [1, -0.3, 0.8, -1.7, 0.2]\nlength = 5\n", times, {"gap"},
+      [](double, double roundings) { return roundings * (5 + 2 * 120); });
+}
+
+// Positions up to 60 are rounded where one run ends, and at each of some hundred collisions after that.
+TEST_F(Continued, RandomStatesHaveTheCollisionsOfOneRun) {
+  const std::string law = "law = { type = 'inelastic', restitution = 0.95, cutoff = 1e-3 }\n";
+  for (const bool wide : {false, true})
+    for (const auto& [walls, initial] : {std::pair("walls = { left.position = 0, right.position = 60 }\n",
+                                                   "type = 'gas'\nparticles = 60\npositions = 'poisson'\n"),
+                                         {"", "type = 'ring'\nparticles = 50\nmasses = [1, 2]\n"}}) {
+      shell("rm -f *.h5", 0);
+      has_the_collisions_of_one_run(law + (wide ? "run.precision = 'double-double'\n" : "") + walls, initial,
+                                    {"4", "8"}, {"x", "v", "m"}, [=](double, double) { return wide ? 1e-14 : 1e-11; });
+    }
 }
 
 }  // namespace cradle::tools::gaps_test

@@ -134,13 +134,4 @@ inline std::string until_collisions(const std::string& file) {
          ".checkpoint 2>.not-yet | grep -q ', [1-9][0-9]* collisions'; do sleep 0.01; done; ";
 }
 
-// The command on the ranks of an MPI job: as any user, on any machine, all ranks on all processors. Open MPI takes what
-// is set here; others do without.
-inline std::string on_ranks(int ranks, const std::string& command) {
-  return fmt::format("OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 "
-                     "OMPI_MCA_rmaps_base_oversubscribe=1 OMPI_MCA_hwloc_base_binding_policy=none "
-                     "PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe mpirun -n {} {}",
-                     ranks, command);
-}
-
 }  // namespace cradle::tests

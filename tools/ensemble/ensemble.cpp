@@ -73,13 +73,11 @@ struct Worker {
   std::unique_ptr<ReplicaRun> runs = {};  // of the ensemble that it worked at last
   std::uint64_t batch = 1;                // replicas
 
-  EnsembleRecord run(const EnsembleState& ensemble, const JobRange& job, const EnsembleOptions& options,
-                     Interrupt& interrupt) {
+  EnsembleRecord run(const EnsembleState& ensemble, const JobRange& job, Interrupt& interrupt) {
     using namespace std::chrono_literals;
     constexpr std::uint64_t most = 1 << 12;
     const auto begun = std::chrono::steady_clock::now();
-    if (!runs || &runs->ensemble() != &ensemble)
-      runs = std::make_unique<ReplicaRun>(ensemble, options.runner, interrupt);
+    if (!runs || &runs->ensemble() != &ensemble) runs = std::make_unique<ReplicaRun>(ensemble, interrupt);
     EnsembleRecord done{.point = job.point};
     try {
       for (ReplicaIndex k = job.replicas.first; k < job.replicas.end(); ++k) {
@@ -120,7 +118,7 @@ void work(EnsembleStore& store, const EnsembleOptions& options, const Processes&
         return job ? std::optional(Batch{std::move(by), *job}) : std::nullopt;
       },
       [&](const Batch& batch) {
-        return batch.by->run(*store.states()[batch.job.point], batch.job, options, processes.interrupt());
+        return batch.by->run(*store.states()[batch.job.point], batch.job, processes.interrupt());
       },
       [&](const Batch&, EnsembleRecord&& done) {
         const std::uint64_t replicas = done.rows.size();

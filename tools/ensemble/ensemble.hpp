@@ -17,8 +17,7 @@ struct EnsembleOptions {
   ReplicaRange replicas;  // of every point: initial.replica of the runs
   unsigned threads = 0;   // of each rank; 0: one per processor
   ProgressLine::Show progress = ProgressLine::Show::on_terminal;
-  Force force = Force::no;    // begin anew, and replace what is there
-  ReplicaRunner runner = {};  // instead of the program's own runs; if it throws, that replica has failed
+  Force force = Force::no;  // begin anew, and replace what is there
 };
 
 struct EnsembleOutcome {

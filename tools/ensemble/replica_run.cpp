@@ -22,8 +22,8 @@ void ReplicaRun::Numbers::begin_again() {
   clear();
 }
 
-ReplicaRun::ReplicaRun(const EnsembleState& ensemble, const ReplicaRunner& runner, Interrupt& interrupt)
-    : ensemble_(ensemble), runner_(runner), options_{Progress::Show::never, nullptr, &interrupt},
+ReplicaRun::ReplicaRun(const EnsembleState& ensemble, Interrupt& interrupt)
+    : ensemble_(ensemble), options_{Progress::Show::never, nullptr, &interrupt},
       scene_(replica_scene(ensemble.scene(), 0)) {}
 
 const RunOutcome& ReplicaRun::run_again() {
@@ -45,8 +45,8 @@ void ReplicaRun::add(ReplicaIndex replica, EnsembleRecord& to) {
       if (run.end == RunEnd::interrupted) throw ReplicaAbandoned();
       layout.put_row(replica, run, row_);
     };
-    if (runner_ || scene_.output.every_replica || scene_.initial.type == InitialType::clusters) {
-      const RunOutcome run = runner_ ? runner_(scene_, options_) : run_scene(scene_, options_);  // with all its tables
+    if (scene_.output.every_replica || scene_.initial.type == InitialType::clusters) {
+      const RunOutcome run = run_scene(scene_, options_);  // with all its tables
       finished(run);
       values_ = layout.values(run);
       if (scene_.output.every_replica) kept = kept_tables(replica, run.result);

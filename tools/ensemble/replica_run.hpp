@@ -2,7 +2,6 @@
 // a replica begins the run again that the one before has left (tools/run/scene_run.hpp), and gives back numbers only.
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <vector>
 
@@ -12,13 +11,10 @@
 
 namespace cradle::tools {
 
-/// Runs the scene of one replica.
-using ReplicaRunner = std::function<RunOutcome(const Scene&, const RunOptions&)>;
-
 class ReplicaRun {
  public:
-  /// `runner` may be empty; else each replica is run by it. The others must outlive this.
-  ReplicaRun(const EnsembleState& ensemble, const ReplicaRunner& runner, Interrupt& interrupt);
+  /// Both must outlive this.
+  ReplicaRun(const EnsembleState& ensemble, Interrupt& interrupt);
 
   const EnsembleState& ensemble() const { return ensemble_; }
   /// Runs a replica and adds it to the record, also if it fails. Throws ReplicaAbandoned if it is interrupted.
@@ -38,7 +34,6 @@ class ReplicaRun {
   const RunOutcome& run_again();
 
   const EnsembleState& ensemble_;
-  const ReplicaRunner& runner_;
   RunOptions options_;
   Scene scene_;
   Numbers numbers_;

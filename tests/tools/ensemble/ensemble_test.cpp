@@ -6,7 +6,6 @@
 #include <numeric>
 
 #include "cradle/tests/tools/ensemble/ensembles.hpp"
-#include "cradle/tests/tools/ensemble/failing_replicas.hpp"
 #include "cradle/tools/ensemble/replica_run.hpp"
 #include "cradle/tools/support/bytes.hpp"
 
@@ -136,26 +135,23 @@ TEST_F(Ensembles, ValuesAreCountedInBinsWhereRequested) {
 }
 
 TEST_F(Ensembles, FailedReplicasAreListedAndHarmNoOther) {
-  tools::EnsembleOptions options{
-      .replicas = {0, 23}, .progress = tools::ProgressLine::Show::never, .runner = run_or_fail};
-  for (const unsigned threads : {1U, 2U}) {
-    options.threads = threads;
-    const auto end = tools::run_ensemble(scene("shock.toml"), options, path(fmt::format("failed-{}.h5", threads)));
-    EXPECT_EQ(end.status, Exit::lost);
-    EXPECT_TRUE(has(end.warning, "replica 7 failed: "));
-    EXPECT_EQ(end.outcome, "18 reached the end, 5 failed");
+  for (const std::string threads : {"1", "2"}) {
+    const Printed end =
+        shell("cradle ensemble failing.toml --replicas 23 --threads " + threads + " -o " + threads + ".h5", 5);
+    EXPECT_TRUE(has(end.err, "replica 9 failed: "));
+    EXPECT_TRUE(has(end.out, "20 reached the end, 3 failed"));
   }
-  expect_same("failed-1.h5", "failed-2.h5");
-  const Result failed = read("failed-1.h5");
-  EXPECT_EQ(numbers(failed, "replicas/failed", "index"), (std::vector<double>{2, 7, 12, 17, 22}));
+  expect_same("1.h5", "2.h5");
+  const Result failed = read("1.h5");
+  EXPECT_EQ(numbers(failed, "replicas/failed", "index"), (std::vector<double>{1, 9, 17}));
   const auto& messages = attribute<std::string>(failed.find("replicas/failed")->attributes, "messages", "");
-  EXPECT_EQ(std::count(messages.begin(), messages.end(), '\n'), 4) << messages;
-  EXPECT_TRUE(begins(messages, "replica 2: "));
+  EXPECT_EQ(std::count(messages.begin(), messages.end(), '\n'), 2) << messages;
+  EXPECT_TRUE(begins(messages, "replica 1: "));
 
   // The others: what they give without those that failed.
-  run("ensemble shock.toml --replicas 2 -o others.h5");
-  for (const auto* first : {"3", "8", "13", "18"}) {
-    run(std::string("ensemble shock.toml --replicas 4 -o part.h5 --first ") + first);
+  run("ensemble failing.toml --replicas 1 -o others.h5");
+  for (const auto* range : {"--first 2 --replicas 7", "--first 10 --replicas 7", "--first 18 --replicas 5"}) {
+    run(std::string("ensemble failing.toml -o part.h5 ") + range);
     run("merge others.h5 part.h5 -o others.h5");
     std::filesystem::remove(folder / "part.h5");
   }
@@ -164,26 +160,29 @@ TEST_F(Ensembles, FailedReplicasAreListedAndHarmNoOther) {
     EXPECT_EQ(numbers(failed, "ensemble/series/energy", statistic),
               numbers(others, "ensemble/series/energy", statistic));
 
-  // They are not run again, and stay listed when the file grows, by the program too.
-  const Printed more = shell("cradle ensemble shock.toml --replicas 26 -o failed-1.h5", 5);
+  // They are not run again, and stay listed when the file grows.
+  const Printed more = shell("cradle ensemble failing.toml --replicas 26 -o 1.h5", 5);
   EXPECT_TRUE(has(more.out, "3 of them now"));
-  EXPECT_TRUE(has(more.err, "replica 7 failed: "));
-  const Result grown = read("failed-1.h5");
+  EXPECT_TRUE(has(more.err, "replica 9 failed: "));
+  const Result grown = read("1.h5");
   EXPECT_EQ(attribute<std::string>(grown.find("replicas/failed")->attributes, "messages", ""), messages);
 }
 
 TEST_F(Ensembles, AllReplicasMayFail) {
-  const tools::EnsembleOptions options{
-      .replicas = {0, 3},
-      .runner = [](const Scene&, const tools::RunOptions&) -> RunOutcome { throw std::runtime_error("two\nlines"); }};
-  EXPECT_EQ(tools::run_ensemble(scene("shock.toml"), options, path("none.h5")).status, Exit::lost);
+  run("ensemble failing.toml --set walls.left.temperature=1e6 --replicas 3 -o none.h5", 5);
   EXPECT_TRUE(std::isnan(numbers(read("none.h5"), "ensemble/series/energy", "mean")[0]));
-  run("ensemble shock.toml --replicas 4 -o none.h5", 5);
+  run("ensemble failing.toml --set walls.left.temperature=1e6 --replicas 4 -o none.h5", 5);
+}
+
+TEST_F(Ensembles, AMessageOfSeveralLinesIsOneLineOfTheFile) {
+  tools::EnsembleRecord record;
+  tools::EnsembleState("", scene("failing.toml"), {}).put_failure(record, 0, "two\nlines");
+  EXPECT_EQ(record.messages.at(0), "two lines");
 }
 
 TEST_F(Ensembles, NumbersOfWholeRunsAreColumnsOfTheTable) {
   // What run_scene reports in RunOutcome::summary, whatever it is, and energy, are there for every replica.
-  tools::run_ensemble(scene("shock.toml"), {.replicas = {0, 3}}, path("a.h5"));
+  run("ensemble shock.toml --replicas 3 -o a.h5");
   const Scene replica = tools::replica_scene(scene("shock.toml"), 1);
   const RunOutcome alone = tools::run_scene(replica, {tools::ProgressLine::Show::never});
   EXPECT_EQ(numbers(read("a.h5"), "replicas", "energy")[1], alone.energy);
@@ -202,8 +201,7 @@ TEST_F(Ensembles, ReplicasThatBeginARunAgainAreRunsOfTheirOwn) {
     const Scene scene = tools::parse_scene(text, "again.toml");
     const tools::EnsembleState state("", scene, {});
     tools::Interrupt interrupt;
-    const tools::ReplicaRunner none;
-    tools::ReplicaRun runs(state, none, interrupt);
+    tools::ReplicaRun runs(state, interrupt);
     tools::EnsembleRecord again, alone;
     for (std::uint64_t k = 0; k < 5; ++k) {
       runs.add(k, again);

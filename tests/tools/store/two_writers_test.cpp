@@ -7,25 +7,32 @@
 
 namespace cradle::tests::two_writers_test {
 
-// The second comes while the first one runs its first replica.
+// The second comes when the first one is about to run its first replica.
 TEST_F(Ensembles, SecondOfTwoThatBeginAfreshIsRefused) {
-  run("ensemble shock.toml --replicas 8 -o whole.h5");
-  Printed second{-1, "", ""};
-  const auto runner = [&](const Scene& replica, const tools::RunOptions& how) {
-    if (second.status == -1) {
-      EXPECT_FALSE(exists("a.h5"));
-      second = shell("cradle ensemble shock.toml --first 4 --replicas 4 -o a.h5");
+  struct First : tools::OneProcess {
+    using OneProcess::OneProcess;
+    int share(const std::vector<tools::JobRange>& jobs, const std::function<void(const tools::NextJob&)>& work,
+              const std::function<void(std::uint64_t)>& others_took) override {
+      begun();
+      return OneProcess::share(jobs, work, others_took);
     }
-    return tools::run_scene(replica, how);
+    std::function<void()> begun;
   };
-  const tools::EnsembleOptions options{
-      .replicas = {0, 4}, .threads = 1, .progress = tools::ProgressLine::Show::never, .runner = runner};
-  EXPECT_EQ(tools::run_ensemble(scene("shock.toml"), options, path("a.h5")).status, Exit::done);
+  Printed second{-1, "", ""};
+  tools::Interrupt interrupt;
+  First first(interrupt);
+  first.begun = [&] {
+    EXPECT_FALSE(exists("a.h5"));
+    second = shell("cradle ensemble shock.toml --first 4 --replicas 4 -o a.h5");
+  };
+  const tools::EnsembleOptions options{.replicas = {0, 4}, .progress = tools::ProgressLine::Show::never};
+  EXPECT_EQ(tools::run_study(tools::ensemble_of(scene("shock.toml")), options, path("a.h5"), first).status, Exit::done);
   EXPECT_EQ(second.status, 4);
   EXPECT_TRUE(begins(second.err, "cradle: a.h5: another program is writing this file (found process "));
   // It comes again when the first one is done: nothing is lost.
   run("ensemble shock.toml --first 4 --replicas 4 -o a.h5");
-  EXPECT_EQ(read("a.h5").find("replicas")->columns.front().rows(), 8U);
+  run("ensemble shock.toml --replicas 8 -o whole.h5");
+  expect_same("whole.h5", "a.h5");
 }
 
 TEST_F(Ensembles, OneRunAtATimeWritesToAName) {

@@ -1,5 +1,5 @@
 """The manual's pages, as they stand: every command and every example is run, page by page, each page in a folder of its
-own, and prints what the page says it prints. Of README, the Python.
+own, and prints what the page says it prints. Of README, the Python and the commands marked `console`.
 
     ```sh, ```python             is run; after `<!-- status: 3 -->` commands have to end with that status
     ```LANGUAGE title="NAME"     is written to the file NAME
@@ -103,12 +103,21 @@ class Manual(unittest.TestCase):
             if SHOWN:
                 print(f"\n== {time.monotonic() - began:.1f} s\n{text}--\n{output}", file=sys.stderr)
 
-    def test_python_of_readme(self):
-        found = [block for block in blocks(os.path.join(ROOT, "README.md"))[0] if block.language == "python"]
+    def of_readme(self, language):
+        found = [block for block in blocks(os.path.join(ROOT, "README.md"))[0] if block.language == language]
         self.assertTrue(found)
-        for block in found:
+        return found
+
+    def test_python_of_readme(self):
+        for block in self.of_readme("python"):
             with self.subTest(block.text):
                 self.python(block)
+
+    def test_commands_of_readme(self):
+        for block in self.of_readme("console"):
+            self.commands(block)
+        for made in ("fig2.h5", "fig2.png", "theory.txt", "fig4.h5", "keys.txt"):
+            self.assertTrue(os.path.exists(made), made)
 
     def test_blocks_that_are_not_run_are_few_and_say_why(self):
         marked = [block for page in pages() for block in blocks(page)[0] if block.mark == "not run"]

@@ -1,5 +1,6 @@
 // Scenes of two clusters, equation (16), as a user runs them: the layout of a result, both scenarios of Fig. 9, Fig. 10
-// with the exponents of (17), and the wet rule where they meet.
+// with the exponents of (17), and the wet rule where they meet. (The force, the same bytes:
+// tests/tools/run/outputs.txt.)
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -55,28 +56,6 @@ TEST_F(RunClusters, ResultHasTheLayoutOfARun) {
   EXPECT_EQ(tools::attribute<std::string>(result.attributes, "precision", ""), "double");
   EXPECT_EQ(tools::attribute<std::string>(result.attributes, "outcome", ""), "reached the end");
   EXPECT_LE(tools::attribute<double>(result.attributes, "relative_tolerance", ""), 1e-10);
-}
-
-TEST_F(RunClusters, ForceIsThatOfTheInset) {
-  const auto result = result_of("fig10 --set run.until=1");
-  const auto& x = numbers(result, "force", "x");
-  const auto& force = numbers(result, "force", "force");
-  const auto& printed = numbers(result, "force", "force_printed");
-  const double edge = tools::attribute<double>(result.find("force")->attributes, "half_width", "");
-  EXPECT_NEAR(2 * edge, 1.12372436, 5e-9);  // equation (13), validation table
-  EXPECT_NEAR(x.front(), -2 * edge, 1e-15);
-  EXPECT_NEAR(x.back(), 2 * edge, 1e-15);
-  for (std::size_t k = 0; k < x.size(); ++k) {
-    EXPECT_NEAR(force[k], -force[x.size() - 1 - k], 1e-15);
-    if (std::abs(x[k]) < edge * (1 - 1e-12)) {
-      EXPECT_GE(force[k] * x[k], 0) << "outwards";
-      EXPECT_EQ(force[k], printed[k]);
-    } else if (std::abs(x[k]) > edge * (1 + 1e-12)) {
-      EXPECT_LT(force[k] * x[k], 0) << "inwards";
-      EXPECT_NEAR(std::abs(force[k]), 0.0563508, 5e-8);  // validation table
-      EXPECT_EQ(std::abs(printed[k]), 0.05);
-    }
-  }
 }
 
 TEST_F(RunClusters, Fig10OscillatesOnBothSidesThenAroundTheCentreAtOneFrequency) {
@@ -168,16 +147,6 @@ TEST_F(RunClusters, WetRuleTakesItsLossFromFastClusters) {
   EXPECT_EQ(stuck[0], 0U);
   EXPECT_NEAR(numbers(result, "series", "energy_lost").back() - (stuck.back() == 1 ? energy.back() : 0),
               0.05 * static_cast<double>(passed), 1e-14);
-}
-
-TEST_F(RunClusters, TwoRunsGiveTheSameBytesAndSamplesChangeNothing) {
-  shell("cradle run fig10 --quiet --force -o a.h5", 0);
-  shell("cradle run fig10 --quiet --force -o b.h5", 0);
-  expect_same("a.h5", "b.h5");
-  const auto often = read("a.h5"), once = result_of("fig10 --set output.series.points=2");
-  for (const auto* name : {"time", "x", "closing_speed", "relative_energy"})
-    EXPECT_EQ(numbers(often, "meetings", name), numbers(once, "meetings", name)) << name;
-  EXPECT_EQ(numbers(often, "series/heaviest", "x").back(), numbers(once, "series/heaviest", "x").back());
 }
 
 }  // namespace cradle::tests::clusters_test

@@ -43,6 +43,16 @@ TEST_F(Manual, HasEveryCommandAndItsOptions) {
   }
 }
 
+TEST_F(Manual, HasEveryExitStatusAndSoDoHelpAndTheManualPage) {
+  const Names statuses = matches(contents(test::source_folder + "/tools/support/errors.hpp"), R"( = ([0-9]+),)");
+  const std::string page = shell("cradle manual", 0).out, help = shell("cradle --help", 0).out,
+                    number = R"(\b([0-9]+)\b)";
+  const auto begin = page.find(".SH EXIT STATUS");
+  EXPECT_EQ(matches(page.substr(begin, page.find(".SH", begin + 1) - begin), number), statuses);
+  EXPECT_EQ(matches(help.substr(help.find("Exit status")), number), statuses);
+  EXPECT_EQ(matches(section("Exit status"), R"([|,] ([0-9]+)\b)"), statuses);
+}
+
 TEST_F(Manual, NamesEverythingInResultFiles) {
   const Names documented = matches(files_page, "`/?([A-Za-z_0-9/.]+)`");
   const auto expect = [&](const std::string& name, const std::string& file) {

@@ -20,7 +20,8 @@ __attribute__((no_sanitize("address"), no_sanitize("undefined"), no_sanitize("th
   _exit(static_cast<int>(cradle::tools::Exit::processor));
 }
 
-// Runs before all initialisers, including those of interrupt.cpp, which are linked later.
+// Runs before all initialisers, those of libraries included. Only hang_ups.cpp, linked earlier, comes before it, and is
+// compiled for any x86-64 as well.
 [[gnu::section(".preinit_array"), gnu::used]] void (*const first_of_all)() = require_instructions;
 
 }  // namespace

@@ -28,7 +28,7 @@ Exit run_trust(const TrustArguments& options) {
   check_overwrite(output, options.command(), &scene, options.force());
   Interrupt interrupt;
   note_signals(interrupt);
-  const auto runs = trust(scene, {options.digits, options.both, options.show(), &interrupt});
+  const auto runs = trust(scene, {options.digits, options.both, options.show(), &interrupt, options.threads});
   Result result = trust_result(scene, runs);
   result.attributes.emplace_back("command", options.command());
   put_result(result, output, trust_table(scene, runs), options.quiet);

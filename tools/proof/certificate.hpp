@@ -64,7 +64,7 @@ struct ReportedDoubt {
   long double width = 0;         // the sum of their radii
   std::string quantity = {};     // agreement: of the run and of the proof
 };
-/// "particles 3 and 4 at t = 5.25: their collision is not certainly later than ...".
+/// "at t = 5.25, after 12 collisions, particles 3 and 4: open whether the gap between them is positive: ...".
 std::string doubt_text(const ReportedDoubt& doubt);
 
 struct Certificate {
@@ -84,13 +84,13 @@ struct ProofEnds {};
 class Certifier : public RunObserver {
  public:
   /// From now on collisions are checked on a thread of their own, while the run makes the next ones.
-  virtual void check_beside() {}
+  virtual void check_beside() = 0;
   /// Checks all collisions that are not checked yet, as a sample does. Throws ProofEnds.
-  virtual void check_all() {}
+  virtual void check_all() = 0;
   virtual Certificate certificate() const = 0;
   /// The first number of the run's tables that is not what is proved of it, within the run's rounding. Without one the
   /// tables have the proved numbers then.
-  virtual std::optional<ReportedDoubt> disagreement(Result&) const { return {}; }
+  virtual std::optional<ReportedDoubt> disagreement(Result& result) const = 0;
 
   bool sample_is_open = false;  // on which side of the last sample a collision falls
 };

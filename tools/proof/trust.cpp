@@ -14,6 +14,7 @@
 #include "cradle/precision/double_double.hpp"
 #include "cradle/tools/proof/certify.hpp"
 #include "cradle/tools/scene/scene.hpp"
+#include "cradle/tools/support/threads.hpp"
 
 namespace cradle::tools {
 
@@ -79,7 +80,8 @@ Scene at_digits(Scene scene, unsigned digits, Coordinates coordinates) {
 Traced traced(const Scene& scene, const TrustOptions& options) {
   const auto started = std::chrono::steady_clock::now();
   TraceObserver observer;
-  RunOutcome outcome = run_scene(scene, {options.progress, &observer, options.interrupt});
+  const Threads threads(options.threads);
+  RunOutcome outcome = run_scene(scene, {options.progress, &observer, options.interrupt, workers(threads)});
   if (outcome.end == RunEnd::interrupted)
     throw Error({}, "interrupted", "", "run it again; nothing is kept of comparisons that did not finish",
                 status_of_signal(options.interrupt->signal()));
@@ -177,7 +179,10 @@ class TracedCertifier final : public Certifier {
     if (proved_.samples.size() < trace_.samples.size())
       proved_.samples.push_back(trace_.samples.back()), proved_.samples.back().open = proof_->sample_is_open;
   }
+  void check_beside() override { proof_->check_beside(); }
+  void check_all() override { proof_->check_all(); }
   Certificate certificate() const override { return proof_->certificate(); }
+  std::optional<ReportedDoubt> disagreement(Result& result) const override { return proof_->disagreement(result); }
 
  private:
   std::unique_ptr<Certifier> proof_;
@@ -191,7 +196,7 @@ ProvedTrace proved_trace(const Scene& scene, const Traced& reference, const Trus
   const unsigned most = reference.outcome.collisions < 1'000'000 ? 1000 : std::max(digits_of_reference, 31U);
   ProvedTrace proof;
   if (not_provable(scene)) return proof;
-  CertifyOptions how{rising_digits(), options.progress, options.interrupt, {}};
+  CertifyOptions how{.progress = options.progress, .interrupt = options.interrupt, .threads = options.threads};
   std::erase_if(how.digits, [&](unsigned digits) { return digits > most; });
   how.make = [&](const Scene& of, unsigned digits) {
     return std::make_unique<TracedCertifier>(certifier(of, digits), proof);
@@ -212,20 +217,14 @@ void compare_with_proof(Trusted& trusted, const Traced& run, const ProvedTrace& 
 }  // namespace
 
 std::vector<Trusted> trust(const Scene& scene, const TrustOptions& options) {
+  const bool rising = options.digits.empty();
   std::vector<Traced> runs;
-  const auto add = [&](unsigned digits) {
+  for (const unsigned digits : rising ? std::vector{16U, 31U, 50U, 100U, 200U, 400U} : options.digits) {
     if (options.both && !particles_merge(scene))
       runs.push_back(traced(at_digits(scene, digits, Coordinates::absolute), options));
     runs.push_back(traced(at_digits(scene, digits, Coordinates::gaps), options));
-  };
-  if (!options.digits.empty()) {
-    for (const unsigned digits : options.digits) add(digits);
-  } else {
-    for (const unsigned digits : {16U, 31U, 50U, 100U, 200U, 400U}) {
-      add(digits);
-      const std::size_t step = options.both ? 2 : 1;
-      if (runs.size() > 2 * step && agree(runs[runs.size() - 1 - step], runs.back())) break;
-    }
+    const std::size_t step = options.both ? 2 : 1;
+    if (rising && runs.size() > 2 * step && agree(runs[runs.size() - 1 - step], runs.back())) break;
   }
   const ProvedTrace proof = proved_trace(scene, runs.back(), options);
   std::vector<Trusted> table;

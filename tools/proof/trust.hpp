@@ -36,6 +36,7 @@ struct TrustOptions {
   bool both = false;             // absolute coordinates too
   Progress::Show progress = Progress::Show::on_terminal;
   Interrupt* interrupt = nullptr;
+  unsigned threads = 1;  // 0: as many as the machine has
 };
 
 /// The last entry is the reference itself. Throws Error for a scene that cannot be run.

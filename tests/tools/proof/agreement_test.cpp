@@ -30,6 +30,8 @@ class Tampered final : public Certifier {
     plant_(changed);
     proof_->sample(changed);
   }
+  void check_beside() override { proof_->check_beside(); }
+  void check_all() override { proof_->check_all(); }
   Certificate certificate() const override { return proof_->certificate(); }
   std::optional<ReportedDoubt> disagreement(Result& of_run) const override {
     in_file_(of_run);
@@ -218,6 +220,18 @@ TEST(Agreement, AnErrorOfARunInDoubleAsksForAWiderOne) {
   EXPECT_TRUE(run.proved());
   ASSERT_EQ(run.attempts.size(), 2U);
   EXPECT_TRUE(has(run.attempts.front().doubt, "the run's energy is not what is proved of it"));
+}
+
+// Three meet at one time, and the run fails before anybody asks whether that is decided.
+TEST(Agreement, TheErrorOfARunComesAfterTheCollisionsThatItHasMade) {
+  const Certified run = certified("law = {type = 'inelastic', restitution = 0.9, cutoff = 0.01}\ninitial = {type = "
+                                  "'list', x = [-1, 0, 1], v = [1, 0, -1]}\nrun.until = 30\n",
+                                  [](const RunSample& at) {
+                                    if (at.time.value > 1) throw Error("a guard of the run");
+                                  });
+  EXPECT_TRUE(cradle::test::begins(run.undecided(),
+                                   "at t = 1, after 1 collisions, particles 1 and 2: open whether they meet after "
+                                   "the last collision of either"));
 }
 
 TEST(Agreement, ARunThatEndsBeforeItsTimeIsProvedUpToThere) {

@@ -51,5 +51,7 @@ if(Python_Development.Module_FOUND AND pybind11_FOUND)
                                                  VISIBILITY_INLINES_HIDDEN ON UNITY_BUILD OFF
                                                  CRADLE_PYTHON_VERSION ${Python_VERSION})
   target_compile_options(cradle_module PRIVATE $<$<CONFIG:Release>:-O2>)
-  target_link_libraries(cradle_module PRIVATE cradle_tools_live cradle_build)
+  include_root(tools/python _root)
+  target_include_directories(cradle_module PRIVATE ${_root})
+  target_link_libraries(cradle_module PRIVATE cradle_tools_store cradle_build)
 endif()

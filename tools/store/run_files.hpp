@@ -32,7 +32,7 @@ namespace cradle::tools {
 /// A result with more numbers than this is not held in memory as a whole.
 inline constexpr std::uint64_t most_in_memory = std::uint64_t{1} << 25;
 
-class RunFiles final : public Sink {
+class RunFiles : public Sink {
  public:
   static std::string journal_of(const std::string& file) { return file + ".part"; }
   static std::string checkpoint_of(const std::string& file) { return file + ".checkpoint"; }

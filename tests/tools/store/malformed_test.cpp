@@ -50,9 +50,8 @@ class MalformedFiles : public ProgramTest {
   void begin(const Scene& scene) {
     const std::string name = "run" + std::to_string(runs_++) + ".h5";
     Interrupt interrupt;
-    RunFiles files(path(name), scene);
-    Stopping store(files, interrupt, {.checks = 5});
-    ASSERT_EQ(run_scene(scene, {Progress::Show::never, nullptr, &interrupt}, store).end, RunEnd::interrupted);
+    Stopping files(interrupt, {.checks = 5}, path(name), scene);
+    ASSERT_EQ(run_scene(scene, {Progress::Show::never, nullptr, &interrupt}, files).end, RunEnd::interrupted);
   }
   static constexpr int resumed = 0, refusal = 1;
   // How `work` ends there, within two seconds of processor time; another number where it crashes.

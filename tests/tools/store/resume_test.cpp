@@ -12,12 +12,11 @@ using namespace cradle::tools;
 using namespace cradle::tests;
 
 // Keeps back how the run ended, so that its file is not written.
-class Unwritten final : public Stopping {
+class Unwritten final : public RunFiles {
  public:
-  using Stopping::Stopping;
-  bool due() const override { return files_.due(); }
+  using RunFiles::RunFiles;
   void end(std::vector<Attribute>&& attributes, RunEnd) override { attributes_ = std::move(attributes); }
-  void write(RunFiles& files) { files.end(std::move(attributes_), RunEnd::reached); }
+  void write() { RunFiles::end(std::move(attributes_), RunEnd::reached); }
 
  private:
   std::vector<Attribute> attributes_;
@@ -48,23 +47,20 @@ std::vector<CutRun> cut_runs() {
 
 class Resuming : public ProgramTest {
  protected:
-  // Returns how it ended; FILE is there if it did.
-  static RunOutcome run(RunFiles& files, Stopping::At at, std::size_t threads) {
+  // Returns how it ended; FILE is there if it did. `from`: the scene of a new run; where a run is resumed, its end.
+  RunOutcome run(const char* name, const auto& from, Stopping::At at, std::size_t threads) const {
     Interrupt interrupt;
-    Stopping store(files, interrupt, at);
+    Stopping files(interrupt, at, path(name), from);
     cradle::Workers workers;  // one after the other, as many as required
     workers.count = threads;
-    return run_scene(files.scene(), {Progress::Show::never, nullptr, &interrupt, workers}, store);
+    return run_scene(files.scene(), {Progress::Show::never, nullptr, &interrupt, workers}, files);
   }
-
   RunOutcome begin(const char* name, const Scene& scene, Stopping::At at, std::size_t threads) const {
-    RunFiles files(path(name), scene);
-    return run(files, at, threads);
+    return run(name, scene, at, threads);
   }
   RunOutcome resume(const char* name, const std::optional<std::string>& until, Stopping::At at,
                     std::size_t threads) const {
-    RunFiles files(path(name), until);
-    return run(files, at, threads);
+    return run(name, until, at, threads);
   }
   // The bytes are those of the file's own scene, run from the beginning.
   void expect_as_in_one_go(const char* name) const {
@@ -183,15 +179,13 @@ TEST_F(Resuming, ARunThatHasNothingToLoseWritesItsFileAlone) {
   for (const char* every : {"0", "1e-9"}) {
     const Scene scene = dry_rows(std::string("output.checkpoint.every_seconds=") + every);
     const std::string name = std::string("a") + every + ".h5";
-    RunFiles files(path(name), scene);
-    Interrupt interrupt;
-    Unwritten sink(files, interrupt, {});
-    run_scene(scene, {Progress::Show::never, nullptr, &interrupt}, sink);
+    Unwritten files(path(name), scene);
+    run_scene(scene, {Progress::Show::never}, files);
     EXPECT_EQ(exists(name + ".part"), files.up_to_date());
     if (*every == '1') {
       EXPECT_TRUE(files.up_to_date());
     }
-    sink.write(files);
+    files.write();
     EXPECT_FALSE(exists(name + ".part"));
   }
   EXPECT_TRUE(contents(path("a0.h5")) == contents(path("a1e-9.h5"))) << "other bytes";
@@ -213,10 +207,8 @@ TEST_F(Resuming, TheWordOfALongerRunIsWrittenOnce) {
 TEST_F(Resuming, WhatIsNotWrittenYetIsWrittenFirst) {
   const Scene scene = dry_rows();
   {
-    RunFiles files(path("a.h5"), scene);
-    Interrupt interrupt;
-    Unwritten sink(files, interrupt, {});
-    run_scene(scene, {Progress::Show::never, nullptr, &interrupt}, sink);  // and then the machine stops
+    Unwritten files(path("a.h5"), scene);
+    run_scene(scene, {Progress::Show::never}, files);  // and then the machine stops
   }
   EXPECT_THROW(RunFiles(path("a.h5"), "200"), Error);
   EXPECT_EQ(resume("a.h5", std::nullopt, {}, 1).end, RunEnd::reached);

@@ -61,14 +61,10 @@
 
 #include "cradle/core/certify/checker.hpp"
 #include "cradle/precision/ball_text.hpp"
+#include "cradle/tools/proof/certificate.hpp"
 #include "cradle/tools/result/result.hpp"
 
 namespace cradle::tools {
-
-struct Disagreement {
-  std::string quantity, of_run, of_proof;
-  long double bound = 0;
-};
 
 /// By how much the numbers of a run may be off.
 struct RunErrors {
@@ -106,7 +102,8 @@ template <Enclosing N> class Agreement {
   explicit Agreement(const RunErrors& errors) : errors_(errors) {}
 
   const RunErrors& errors() const { return errors_; }
-  const std::optional<Disagreement>& broken() const { return broken_; }
+  /// Without its time, and the collisions that are proved before it.
+  const std::optional<ReportedDoubt>& broken() const { return broken_; }
 
   /// `quantity`: its name, or a function that makes it, which is called for a disagreement only.
   void count(const auto& quantity, std::uint64_t of_run, std::uint64_t of_proof) {
@@ -148,13 +145,13 @@ template <Enclosing N> class Agreement {
   void report(const auto& quantity, const std::string& of_run, const std::string& of_proof, long double bound) {
     if (broken_) return;
     if constexpr (std::invocable<decltype(quantity)>)
-      broken_ = Disagreement{quantity(), of_run, of_proof, bound};
+      report(quantity(), of_run, of_proof, bound);
     else
-      broken_ = Disagreement{quantity, of_run, of_proof, bound};
+      broken_ = ReportedDoubt{Check::agreement, true, -1, -1, 0, 0, of_run, of_proof, bound, quantity};
   }
 
   RunErrors errors_;
-  std::optional<Disagreement> broken_;
+  std::optional<ReportedDoubt> broken_;
 };
 
 /// What a proof encloses of the tables of a result, which it is compared with as a whole before anything is called
@@ -166,7 +163,7 @@ template <Enclosing N> class ProvedTables {
     columns_[column].push_back({row, std::move(proved), bound});
   }
 
-  std::optional<Disagreement> compare(Result& result, const RunErrors& errors) const {
+  std::optional<ReportedDoubt> compare(Result& result, const RunErrors& errors) const {
     Agreement<N> agreement(errors);
     for_each_column(result, [&](const std::string& path, Column& column, const std::vector<Row>& rows) {
       compare(path, column, rows, agreement);

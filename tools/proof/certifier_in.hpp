@@ -111,11 +111,9 @@ template <class M> class CertifierIn final : public Certifier {
             middle(doubt.second),
             static_cast<long double>(doubt.first.radius() + doubt.second.radius())};
   }
-
-  ReportedDoubt reported(const Disagreement& broken, double time) const {
-    return {
-        Check::agreement, true,           -1, -1, time, checker_.proved().collisions, broken.of_run, broken.of_proof,
-        broken.bound,     broken.quantity};
+  ReportedDoubt reported(ReportedDoubt broken, double time) const {
+    broken.time = time, broken.collisions = checker_.proved().collisions;
+    return broken;
   }
 
   // Checks one collision and keeps its time and closing speed, which the file has, too.

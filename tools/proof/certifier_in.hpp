@@ -132,17 +132,18 @@ template <class M> class CertifierIn final : public Certifier {
         certificate_.open_samples.push_back(asked.time.text);
         return asked.of_snapshots ? snapshots_.skip() : void();
       }
-      end(reported(*state.doubt, sample.time.value));
+      end(reported(*state.doubt, sample.time.meant.value));
     }
     compare(sample, asked, time, state, of_series);
     add_sample(sample, asked, state);
-    if (asked.of_snapshots) snapshots_.add(time, sample.time.value, certificate_.snapshots);
+    if (asked.of_snapshots) snapshots_.add(time, sample.time.meant.value, certificate_.snapshots);
   }
 
   // All that the run has of what is proved of it. A collision on the wrong side of a threshold need not change their
   // sequence; and what the program gets wrong here or there would be called proved.
   void compare(const RunSample& sample, const RequestedTime& asked, const N& time, const CertainState<N>& state,
                bool of_series) {
+    const SampledState& now = sample.state;
     const auto& proved = checker_.proved();
     const long double since = std::abs(to_double(time)) + 2 * std::abs(to_double(start_));
     RunErrors errors = run_errors(state.sizes, proved.collisions, means_, sample.epsilon, since,
@@ -163,33 +164,33 @@ template <class M> class CertifierIn final : public Certifier {
       run.count(name, of_run, of_proof);
       of_file(column, N(static_cast<std::int64_t>(of_proof)), 0);
     };
-    const auto same_number = [&](const std::string& name, const std::string& column, const std::string& of_run,
+    const auto same_number = [&](const std::string& name, const std::string& column, const Number& of_run,
                                  const std::optional<N>& of_proof, long double bound) {
-      run.number(name, of_run, of_proof, bound);
+      run.number(name, of_run.text(), of_proof, bound);
       of_file(column, of_proof, bound);
     };
-    same_count("collisions", "collisions", sample.counts.collisions, proved.collisions);
-    same_count("merges", "merges", sample.counts.merges, proved.merges);
+    same_count("collisions", "collisions", now.counts.collisions, proved.collisions);
+    same_count("merges", "merges", now.counts.merges, proved.merges);
     // To elastic particles a cut-off does nothing, and without gravity none of them is counted here.
     if (!law_.elastic || particles_->fall())
-      same_count("collisions_below_cutoff", "collisions_below_cutoff", sample.counts.below_cutoff, proved.below_cutoff);
+      same_count("collisions_below_cutoff", "collisions_below_cutoff", now.counts.below_cutoff, proved.below_cutoff);
     if (sample.at_collision)
-      same_number("time of the last collision", "time", sample.time.text, start_ + state.time,
+      same_number("time of the last collision", "time", sample.time.exact, start_ + state.time,
                   time_error(errors, since, static_cast<long double>(state.closing.least_size())));
     else
-      same_number("time of the sample", "time", sample.time.text, number<N>(asked.time), 8 * sample.epsilon * since);
-    same_number("energy", "energy", sample.energy, state.energy, errors.energy);
+      same_number("time of the sample", "time", sample.time.exact, number<N>(asked.time), 8 * sample.epsilon * since);
+    same_number("energy", "energy", now.energy, state.energy, errors.energy);
     if (!particles_->walled() && !particles_->fall())
       of_file("energy_lost", particles_->kinetic_energy() - state.energy, 2 * errors.energy);
-    for (const auto& [name, of_run, of_proof] : {std::tuple("front_left", &sample.front_left, &state.front_left),
-                                                 std::tuple("front_right", &sample.front_right, &state.front_right)}) {
-      run.number(name, *of_run, *of_proof, errors.place);
+    for (const auto& [name, of_run, of_proof] : {std::tuple("front_left", &now.front_left, &state.front_left),
+                                                 std::tuple("front_right", &now.front_right, &state.front_right)}) {
+      run.number(name, *of_run ? (*of_run)->text() : "", *of_proof, errors.place);
       if (!particles_->on_ring()) of_file(name, *of_proof, errors.place);
     }
     for (const End end : {End::left, End::right}) {
       in_file = of_series && particles_->wall(end) != nullptr;
       const auto k = static_cast<std::size_t>(end);
-      const SampledWall& of_run = sample.walls[k];
+      const SampledState::Wall& of_run = now.walls[k];
       const CertainAccount<N>& wall = state.walls[k];
       const char* const which = end == End::left ? "left" : "right";
       const std::string name = fmt::format(" the {} wall", which), column = fmt::format("wall_{}_", which);
@@ -203,7 +204,7 @@ template <class M> class CertifierIn final : public Certifier {
                   collisions * errors.wall_energy);
     }
     if (asked.of_snapshots) snapshots_.compare(sample.particles, time, run);
-    if (const auto& broken = run.broken()) end(reported(*broken, sample.time.value));
+    if (const auto& broken = run.broken()) end(reported(*broken, sample.time.meant.value));
   }
   static long double time_error(const RunErrors& errors, long double since, long double closing) {
     return closing > 0 ? 2 * (errors.place + since * errors.speed) / closing + errors.place
@@ -214,7 +215,7 @@ template <class M> class CertifierIn final : public Certifier {
   void add_sample(const RunSample& sample, const RequestedTime& asked, const CertainState<N>& state) {
     // At the last collision the time is that of the exact system, which has made the collision by then.
     const N last = start_ + state.time;
-    CertainSample proved_sample{sample.at_collision ? to_double(last) : sample.time.value,
+    CertainSample proved_sample{sample.at_collision ? to_double(last) : sample.time.meant.value,
                                 sample.at_collision ? in_decimals(last).high : asked.time.text,
                                 asked.of_series,
                                 checker_.proved().collisions,

@@ -39,7 +39,7 @@ template <Enclosing N> class ProvedSnapshots {
     checker_.for_each(time, [&](ParticleIndex particle, const N& m, const N& x, const N& v) {
       const auto found = at.find(particle);
       const bool there = found != at.end();
-      if (!there && (particle < particles.from || particle > particles.to)) return;
+      if (!there && (particle < particles.range.first || particle > particles.range.second)) return;
       const auto number = [&](const char* what, const std::vector<std::string>& all, const N& of_proof,
                               long double bound) {
         const auto quantity = [&] { return fmt::format("{} of particle {} in the snapshot", what, particle); };

@@ -47,9 +47,10 @@ class TraceObserver final : public RunObserver {
     last_ = now;
   }
   void sample(const RunSample& sample) override {
+    const SampledState& now = sample.state;
     if (sample.of_series || sample.at_collision)
-      samples.push_back({sample.time.value, trace_.digest(), sample.counts.collisions, sample.counts.merges,
-                         sample.energy, sample.front_right, sample.at_collision});
+      samples.push_back({sample.time.meant.value, trace_.digest(), now.counts.collisions, now.counts.merges,
+                         now.energy.text(), now.front_right ? now.front_right->text() : "", sample.at_collision});
   }
   // Whether the sequence says more than the number of collisions: not at one place (a ball), nor where two take turns.
   bool has_an_order() const { return places_.size() > 2 || (places_.size() == 2 && repeats_); }

@@ -79,7 +79,8 @@ std::optional<Number> Schedule::next(const std::optional<Number>& after) const {
   return first == nullptr ? std::nullopt : std::optional((*first)[place]);
 }
 
-std::vector<RequestedTime> Schedule::requested(const Scene& scene, const Number& time) const {
+std::vector<RequestedTime> Schedule::requested(const Scene& scene, const Number& time, bool at_collision) const {
+  if (at_collision) return {{Decimal(time.text()), true, false, true}};
   std::vector<RequestedTime> all;
   const auto at = [&](const Decimal& decimal) -> RequestedTime& {
     for (RequestedTime& asked : all)

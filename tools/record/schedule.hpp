@@ -74,8 +74,8 @@ class Schedule {
   std::optional<Number> next(const std::optional<Number>& after) const;
   const Number& last() const { return last_; }
   /// The decimal times that this stop of a run stands for. Points between the ends of a series need not be decimals:
-  /// they are the run's own times.
-  std::vector<RequestedTime> requested(const Scene& scene, const Number& time) const;
+  /// they are the run's own times. `at_collision`: the run ends at this time, with its last collision.
+  std::vector<RequestedTime> requested(const Scene& scene, const Number& time, bool at_collision) const;
 
  private:
   Times end_;

@@ -12,7 +12,6 @@
 #include "cradle/tools/engines/precision.hpp"
 #include "cradle/tools/result/result.hpp"
 #include "cradle/tools/run/ends.hpp"
-#include "cradle/tools/run/run_observer.hpp"
 #include "cradle/tools/run/sink.hpp"
 #include "cradle/tools/scene/scene.hpp"
 #include "cradle/tools/support/errors.hpp"
@@ -20,6 +19,8 @@
 #include "cradle/tools/support/progress.hpp"
 
 namespace cradle::tools {
+
+class RunObserver;
 
 struct RunOptions {
   Progress::Show progress = Progress::Show::on_terminal;

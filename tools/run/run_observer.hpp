@@ -2,45 +2,40 @@
 // throws, the run ends.
 #pragma once
 
-#include <array>
-#include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "cradle/core/engine/status.hpp"
-#include "cradle/tools/record/rows.hpp"
+#include "cradle/tools/engines/run_state.hpp"
+#include "cradle/tools/record/schedule.hpp"
 
 namespace cradle::tools {
 
-/// The particles of a snapshot: `from` and `to` are the numbers of the outermost ones at the start. Decimals have all
-/// digits of the run's precision.
+/// The particles of a snapshot, and the numbers of the outermost ones at the start. Decimals have all digits of the
+/// run's precision.
 struct SampledParticles {
-  ParticleIndex from = 0, to = -1;
+  std::pair<ParticleIndex, ParticleIndex> range{0, -1};
   std::vector<ParticleIndex> index;
   std::vector<std::string> x, v, m;
 };
 
-/// The account of a wall since the start; decimals have all digits of the run's precision.
-struct SampledWall {
-  std::uint64_t collisions = 0;
-  std::string given, momentum, dissipated;
-};
-
-struct SampledTime {
-  double value = 0;
-  std::string text = "0";
-};
-
 struct RunSample {
-  SampledTime time;                      // its text and the decimals below have all digits of the run's precision
-  long double epsilon = 0;               // of that precision
-  std::vector<RequestedTime> requested;  // all requested times that the run's precision cannot distinguish from `time`
-  bool of_series = false;
-  bool at_collision = false;  // the run ends here, with its last collision
-  Counts counts;
-  std::string energy, front_left, front_right;  // fronts: empty before the first collision
-  SampledParticles particles;                   // of a snapshot, else empty
-  std::array<SampledWall, 2> walls;             // of the left one and of the right one
+  RunSample(const RunState& now, const Scene& scene, const Schedule& plan, long double epsilon_, bool at_collision_)
+      : time(now.time), state(now.state()), epsilon(epsilon_),
+        requested(plan.requested(scene, time.exact, at_collision_)), of_series(plan.series().hold(time.exact)),
+        at_collision(at_collision_) {
+    using enum RunState::Column;
+    if (!at_collision && plan.snapshots().hold(time.exact))
+      particles = {now.range(), now.index(), now.column_text(x), now.column_text(v), now.column_text(m)};
+  }
+
+  RunTime time;
+  SampledState state;
+  long double epsilon;                   // of the run's precision
+  std::vector<RequestedTime> requested;  // all requested times that this precision cannot distinguish from `time`
+  bool of_series;
+  bool at_collision;           // the run ends here, with its last collision
+  SampledParticles particles;  // of a snapshot, else empty
 };
 
 class RunObserver {

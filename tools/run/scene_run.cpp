@@ -7,7 +7,7 @@
 #include "cradle/tools/record/measurements.hpp"
 #include "cradle/tools/run/report.hpp"
 #include "cradle/tools/run/run_guards.hpp"
-#include "cradle/tools/run/run_sample.hpp"
+#include "cradle/tools/run/run_observer.hpp"
 #include "cradle/tools/theory/cost.hpp"
 
 namespace cradle::tools {
@@ -237,7 +237,7 @@ class EngineRun final : public SceneRun {
     return true;
   }
   void notify_observer(const RunState& now, bool at_collision) {
-    if (options_.observer != nullptr) options_.observer->sample(run_sample(scene_, plan_, *engine_, now, at_collision));
+    if (options_.observer != nullptr) options_.observer->sample({now, scene_, plan_, engine_->epsilon(), at_collision});
   }
 
   void end_with(Status status) {

@@ -28,10 +28,11 @@ std::string comments(const std::vector<Attribute>& attributes) {
   return text;
 }
 
-std::string heading(const std::string& name) {
-  if (name.find_first_of(",\"") == name.npos) return name;
+// A heading or a value, in quotation marks where it needs them (RFC 4180).
+std::string cell(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == text.npos) return text;
   std::string quoted = "\"";
-  for (const char c : name) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
   return quoted + '"';
 }
 
@@ -99,13 +100,13 @@ std::string csv(const Group& group) {
   std::string text = comments(group.attributes);
   std::size_t rows = 0;
   std::string separator;
-  const auto append = [&](const std::string& cell) {
-    text += separator + cell;
+  const auto append = [&](const std::string& content) {
+    text += separator + cell(content);
     separator = ",";
   };
   for (const auto& column : group.columns) {
     for (std::size_t i = 0; i < column.width; ++i)
-      append(heading(column.width > 1 ? fmt::format("{}[{}]", column.name, i) : column.name));
+      append(column.width > 1 ? fmt::format("{}[{}]", column.name, i) : column.name);
     rows = std::max(rows, column.rows());
   }
   if (!group.columns.empty()) text += '\n';

@@ -71,10 +71,12 @@ TEST_F(ResultFiles, CsvIsCompleteAndCanBeRunAgain) {
   tools::Result result = small_result();
   result.groups[0].attributes = {{"messages", std::string("one\ntwo")}, {"scene", std::string("a = 1\nb = 2\n")}};
   result.groups[0].columns[1].name = "energy, \"kinetic\"";
+  result.groups[0].columns.push_back(
+      {"how", "1", "", std::vector<std::string>{"mpfr, 50 digits", "\"seen\"", "two\nlines"}});
   tools::export_csv(result, path("csv"));
   EXPECT_EQ(contents(folder / "csv/series.csv"),
-            "# messages = one\n#   two\ntime,\"energy, \"\"kinetic\"\"\",collisions\n0,2,0\n0.1,1e-310,7\n3,-0,"
-            "18446744073709551615\n");
+            "# messages = one\n#   two\ntime,\"energy, \"\"kinetic\"\"\",collisions,how\n0,2,0,\"mpfr, 50 digits\"\n"
+            "0.1,1e-310,7,\"\"\"seen\"\"\"\n3,-0,18446744073709551615,\"two\nlines\"\n");
   EXPECT_EQ(contents(folder / "csv/series/heaviest.csv"), "x[0],x[1]\n1,2\n3,4\n5,6\n");
   EXPECT_TRUE(begins(contents(folder / "csv/scene.toml"), "# format_version = 2\n# cradle_version = 1\n"));
 }

@@ -173,36 +173,27 @@ void EnsembleStore::start_journal(unsigned rank, ReplicaRange wanted, std::uint6
     journal_.emplace(part_, header());
 }
 
+// Syncs the journal from time to time, and rewrites it as nodes of the tree when it has become large.
 void EnsembleStore::add(EnsembleRecord&& replicas) {
+  using namespace std::chrono_literals;
+  bool due = false, large = false;
   {
     const std::shared_lock lock(changing_);
     const std::string bytes = to_bytes(replicas);
     std::unique_lock appending(appending_);
     if (!journal_) journal_.emplace(part_, header());
     journal_->append(bytes);
-    appending.unlock();
-    states_.at(replicas.point)->apply(std::move(replicas));
-  }
-  keep_safe();
-}
-
-// Syncs the journal from time to time, and rewrites it as nodes of the tree when it has become large.
-void EnsembleStore::keep_safe() {
-  using namespace std::chrono_literals;
-  bool due = false, large = false;
-  {
-    const std::scoped_lock lock(appending_);
+    large = journal_->bytes() > largest_;
     const auto now = std::chrono::steady_clock::now();
     due = now - synced_ > 20s;
-    large = journal_->bytes() > largest_;
     if (due) synced_ = now;
+    appending.unlock();
+    states_.at(replicas.point)->apply(std::move(replicas));
+    if (due && !large) journal_->sync();
   }
   if (large) {
     const std::unique_lock lock(changing_);
     if (journal_->bytes() > largest_) compact();
-  } else if (due) {
-    const std::shared_lock lock(changing_);
-    journal_->sync();
   }
 }
 

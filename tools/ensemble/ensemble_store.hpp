@@ -39,7 +39,8 @@ class EnsembleStore {
   /// Claims FILE for the lifetime of this object, and reads it and all journals. Throws Error: Exit::bad_input if they
   /// belong to other scenes, Exit::io if they cannot be read or another program is writing them. Returns warnings about
   /// journals.
-  /// Forced, they are not read: the study begins anew, and replaces them when it ends.
+  /// Forced, it reads none of them and removes the journals at once: the study begins anew, with a journal of its own,
+  /// and replaces FILE when it ends.
   std::string load(Force force = Force::no);
   /// Reads FILE alone, which must exist: to inspect or to merge it.
   /// `otherwise`: what to do where it holds something else.
@@ -66,7 +67,7 @@ class EnsembleStore {
 
   /// Writes FILE, then removes the journals.
   void finish();
-  /// Removes the journals if FILE holds all their replicas.
+  /// Removes the journals: FILE holds their replicas, or the study begins anew.
   void drop_journals();
   Result result() const;
   std::uint64_t replicas() const;  // of all points
@@ -81,7 +82,6 @@ class EnsembleStore {
   static constexpr const char* another_file = "give another -o FILE, or --force to replace it";
   JournalHeader header() const;
   std::vector<std::string> rank_journals() const;
-  void keep_safe();
   void compact();
 
   Study study_;
@@ -93,9 +93,10 @@ class EnsembleStore {
 
   std::optional<FileClaim> claim_;  // of FILE and all journals
   std::optional<JournalWriter> journal_;
-  std::mutex appending_;        // to the journal
-  std::shared_mutex changing_;  // shared while replicas are added, exclusive while the journal is rewritten
-  std::uint64_t largest_ = 0;   // bytes of a journal before it is rewritten
+  // Threads that add replicas share this; the one that rewrites the journal has it alone.
+  std::shared_mutex changing_;
+  std::uint64_t largest_ = 0;  // bytes of a journal before it is rewritten
+  std::mutex appending_;       // to the journal, and for its length and the time of its last sync
   std::chrono::steady_clock::time_point synced_ = std::chrono::steady_clock::now();
 };
 

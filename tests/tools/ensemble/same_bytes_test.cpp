@@ -1,6 +1,7 @@
 // An ensemble gives the same file for any history: on any number of threads, continued, split and merged, interrupted,
 // killed, with damaged or left-over journals. (What is refused: tests/tools/messages.txt.)
 
+#include "cradle/core/ensemble/executor.hpp"
 #include "cradle/tests/tools/ensemble/ensembles.hpp"
 #include "cradle/tools/ensemble/ensemble.hpp"
 
@@ -95,15 +96,19 @@ TEST_F(Ensembles, JournalWrittenAnewGivesTheSameBytes) {
     tools::EnsembleStore store(study, path("anew.h5"));
     store.start_journal(0, {0, 64}, 1);  // as soon as it is larger than a byte, and then when it has grown fourfold
     const auto& layout = store.states()[0]->layout();
-    for (std::uint64_t k = 0; k < 64; ++k) {
+    const auto record = [&](std::uint64_t k) {
       const tools::RunOutcome end =
           tools::run_scene(tools::replica_scene(study.scene, k), {tools::ProgressLine::Show::never});
       tools::EnsembleRecord one;
       store.states()[0]->put(one, layout.row(k, end), layout.values(end));
-      store.add(std::move(one));
-    }
+      return one;
+    };
+    for (std::uint64_t k = 0; k < 64; ++k) store.add(record(k));
     EXPECT_LT(std::filesystem::file_size(folder / "anew.h5.part"), 4 * 32 * 8 * layout.entries)
         << "64 nodes of four vectors otherwise";
+    std::vector<tools::EnsembleRecord> more;
+    for (std::uint64_t k = 64; k < 96; ++k) more.push_back(record(k));
+    for_each(ThreadExecutor(4), more.size(), [&](std::size_t k, std::size_t) { store.add(std::move(more[k])); });
   }
   run("ensemble shock.toml --replicas 100 -o anew.h5");
   expect_same("whole.h5", "anew.h5");

@@ -16,7 +16,7 @@
 namespace cradle::tools {
 
 struct CheckpointHeader {
-  JournalHeader run;                     // of the journal that it belongs to, which has the same identity
+  JournalHeader run;  // of a run: as its journal begins, with the same identity; a simulation in Python has no journal
   std::uint64_t records = 0, check = 0;  // of the journal at that time: number of records, checksum of the last one
   double seconds = 0, time = 0;          // of computing; simulated
   std::uint64_t collisions = 0;

@@ -37,10 +37,10 @@ struct SpreadRequest {
 /// The kind of a search for a threshold: only its own command continues it.
 inline constexpr std::string_view threshold_kind = "threshold";
 
-/// What the records belong to.
+/// What the records of a journal, or a checkpoint, belong to.
 struct JournalHeader {
-  std::string kind;            // "run", "ensemble", "sweep" or "threshold"
-  std::uint64_t identity = 0;  // of a run: random; of others: their own
+  std::string kind;            // "run", "ensemble", "sweep" or "threshold"; "simulation": a checkpoint from Python
+  std::uint64_t identity = 0;  // of a run: random; of a simulation: 0; of others: their own
   std::string scene, name;     // scene: effective, as TOML
   // Of a run:
   double every_seconds = 60;  // between checkpoints

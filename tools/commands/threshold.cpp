@@ -25,8 +25,8 @@ Exit run_threshold(const ThresholdArguments& options) {
   note_signals(interrupt);
   const Threshold found = find_threshold(
       question, output, {interrupt, options.show(), options.threads, !options.no_proof, options.force()});
-  put_result(threshold_result(question, found, question.command(options.scene)), output,
-             threshold_text(question, found), options.quiet);
+  const std::string command = question.command(options.scene) + (options.no_proof ? " --no-proof" : "");
+  put_result(threshold_result(question, found, command), output, threshold_text(question, found), options.quiet);
   ::unlink((output + ".part").c_str());
   return Exit::done;
 }

@@ -3,15 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <chrono>
-#include <cstring>
 #include <filesystem>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <utility>
 
+#include "cradle/tools/support/shell.hpp"
 #include "cradle/tools/support/threads.hpp"
 
 namespace cradle::tools {
@@ -34,18 +33,13 @@ void check_digits(const Study& study) {
                   "run them one after the other");
 }
 
-// Quotes a path for a shell.
-std::string quoted(const std::string& path) {
-  const auto plain = [](unsigned char c) { return std::isalnum(c) != 0 || std::strchr("._-+/", c) != nullptr; };
-  return std::ranges::all_of(path, plain) ? path : "'" + path + "'";
-}
-
 // The command that runs this replica alone, with the settings of its point.
 std::string alone_command(const std::string& file, const std::string& group, ReplicaIndex replica) {
   const auto stem = std::filesystem::path(file).replace_extension().string();
   const std::string folder = stem == file ? file + "-scenes" : stem;
   return fmt::format("cradle export {} --to {} && cradle run {}/{}scene.toml --set initial.replica={} -o replica.h5",
-                     quoted(file), quoted(folder), quoted(folder), group.empty() ? "" : group + "/", replica);
+                     shell_word(file), shell_word(folder), shell_word(folder), group.empty() ? "" : group + "/",
+                     replica);
 }
 
 std::string failure_warning(const EnsembleStates& states, const std::string& file) {

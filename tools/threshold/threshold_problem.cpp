@@ -9,6 +9,7 @@
 #include "cradle/tools/scene/fields.hpp"
 #include "cradle/tools/scene/source.hpp"
 #include "cradle/tools/support/checksum.hpp"
+#include "cradle/tools/support/shell.hpp"
 #include "cradle/tools/support/spelling.hpp"
 #include "cradle/tools/support/version.hpp"
 
@@ -153,9 +154,9 @@ std::uint64_t ThresholdProblem::identity() const {
 }
 
 std::string ThresholdProblem::command(const std::string& scene_file) const {
-  std::string text =
-      fmt::format("threshold {} --vary '{}' --digits {} --outcome {}", scene_file, vary_, digits_, what().name);
-  for (const std::string& assignment : overrides_) text += fmt::format(" --set '{}'", assignment);
+  std::string text = fmt::format("threshold {} --vary {} --digits {} --outcome {}", shell_word(scene_file),
+                                 shell_word(vary_), digits_, what().name);
+  for (const std::string& assignment : overrides_) text += " --set " + shell_word(assignment);
   return text;
 }
 

@@ -148,14 +148,14 @@ def command_of(result: Result) -> list[str]:
         "certify" if result.certificate.attributes else "trust" if len(result.trust) else "")
     if made_by:  # with its options
         command, *options = shlex.split(str(made_by))
-        words = [command, f"{name}.toml", *map(shlex.quote, options)]
+        words = [command, f"{name}.toml", *options]
     elif result.kind in ("words", "threshold"):
         words = shlex.split(str(result.table(result.kind).attributes["command"]))
     elif result.kind == "sweep":
         words = ["sweep", f"{name}.toml"]
         planned = result.scene.get("sweep", {})
         if not planned.get("vary") and not planned.get("points"):
-            words += [word for point in result.points for word in ("--point", f'"{point.label}"')]
+            words += [word for point in result.points for word in ("--point", point.label)]
         words += ["--replicas", str(about["replicas"] // max(1, len(result.points)))]
     elif result.kind == "ensemble":
         first = int(min(result.replicas["index"].values)) if len(result.replicas.get("index", ())) else 0
@@ -172,7 +172,7 @@ def command_of(result: Result) -> list[str]:
 def again(result: Result) -> str:
     """The command and the scene, which give the same bytes."""
     scene, name = result.scene_text, str(result.attributes.get("name", "scene"))
-    command = "cradle " + " ".join(command_of(result))
+    command = shlex.join(["cradle", *command_of(result)])
     version = text(result.attributes.get("cradle_version", ""))
     caption = (f"<p>With this scene as {code(name + '.toml')} the same cradle, {version}, gives the same bytes:</p>\n"
                + preformatted(command))

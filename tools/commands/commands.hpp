@@ -47,9 +47,8 @@ struct CommonOptions : RunningOptions {
 
   /// The assignments of --set and --seed.
   std::vector<std::string> all_overrides() const;
-  /// The scene; what reading it left out is printed, unless --quiet.
+  /// The scene; its remarks are printed, unless --quiet.
   Scene read() const;
-  std::string left_out() const;
 };
 void add_common_options(Command& command, CommonOptions& options);
 

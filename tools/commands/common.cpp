@@ -15,11 +15,9 @@ std::vector<std::string> CommonOptions::all_overrides() const {
 
 Scene CommonOptions::read() const {
   Scene read = read_scene(scene, all_overrides());
-  if (!quiet) notify(left_out() + read.remarks);
+  if (!quiet) notify(read.remarks);
   return read;
 }
-
-std::string CommonOptions::left_out() const { return times_left_out(scene, all_overrides()); }
 
 void put_result(const Result& result, const std::string& output, const std::string& text, bool quiet) {
   write_or_keep(result, output);

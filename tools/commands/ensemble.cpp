@@ -38,7 +38,7 @@ StudyPlan plan(const EnsembleArguments& options) {
           {options.first, options.replicas},
           options.output_or(scene.name + "-ensemble.h5"),
           options.force(),
-          options.left_out() + scene.remarks};
+          scene.remarks};
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ StudyPlan plan(const SweepArguments& options) {
           {options.first, sweep.replicas},
           options.output_or(scene.name + "-sweep.h5"),
           options.force(),
-          options.left_out() + scene.remarks};
+          scene.remarks};
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "cradle/tools/record/rows.hpp"
+#include "cradle/tools/record/schedule.hpp"
 
 namespace cradle::tools {
 
@@ -51,7 +51,7 @@ void check_ensemble(const Scene& scene) {
 
 ReplicaLayout replica_layout(const Scene& scene) {
   check_ensemble(scene);
-  const PlannedTimes times = planned_times(scene);
+  const Schedule plan(scene);
   ReplicaLayout layout;
   const auto add = [&](const Column& column, const std::string& group, std::size_t rows,
                        std::optional<std::size_t> number = {}) {
@@ -68,8 +68,8 @@ ReplicaLayout replica_layout(const Scene& scene) {
         if (const Column& column = group.columns[k]; column.name == "time")
           layout.time = column;  // the first column of "series"
         else if (!column.names)
-          add(column, group.name, times.series.size(), group.name == "series" ? std::optional(k) : std::nullopt);
-  layout.time.values = times.series;
+          add(column, group.name, plan.series().size(), group.name == "series" ? std::optional(k) : std::nullopt);
+  layout.time.values = plan.series().rounded();
   const auto add_binned = [&](const Group& table, const std::string& group, std::vector<Attribute> attributes) {
     layout.binned.push_back({group, std::move(attributes), {}});
     std::vector<Column>& bins = layout.binned.back().bins;
@@ -81,8 +81,8 @@ ReplicaLayout replica_layout(const Scene& scene) {
   };
   for (const auto& [number, row] : rows)
     if (row->table_at)
-      for (std::size_t k = 0; k < times.tables[number].size(); ++k)
-        add_binned(row->table_at(scene), fmt::format("{}/{:04}", row->name, k), {{"time", times.tables[number][k]}});
+      for (std::size_t k = 0; const double time : plan.of[number].tables.rounded())
+        add_binned(row->table_at(scene), fmt::format("{}/{:04}", row->name, k++), {{"time", time}});
   for (const auto& [number, row] : rows)
     if (row->tables_at_end)
       for (const Group& table : row->tables_at_end(scene)) add_binned(table, table.name, table.attributes);

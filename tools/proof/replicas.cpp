@@ -6,6 +6,7 @@
 
 #include "cradle/tools/ensemble/layout.hpp"
 #include "cradle/tools/ensemble/state.hpp"
+#include "cradle/tools/record/schedule.hpp"
 #include "cradle/tools/support/threads.hpp"
 
 namespace cradle::tools {
@@ -42,7 +43,7 @@ std::uint64_t proved_of(const CertifiedReplicas& run) {
 CertifiedReplicas certify_replicas(const Scene& scene, std::uint64_t count, unsigned threads,
                                    const CertifyOptions& options) {
   check_ensemble(scene);
-  CertifiedReplicas result{scene, {}, planned_times(scene).series, {}};
+  CertifiedReplicas result{scene, {}, Schedule(scene).series().rounded(), {}};
   std::vector<Kept> all(count);
   const auto interrupted = [&] { return options.interrupt != nullptr && options.interrupt->signal() != 0; };
   const auto prove = [&](std::uint64_t index, const std::vector<unsigned>& digits) {

@@ -50,14 +50,6 @@ struct RequestedTime {
   bool last = false;  // the end of the run
 };
 
-/// The times of the series and of tables at times, and the end, as results store them: rounded from the run's
-/// precision.
-struct PlannedTimes {
-  std::vector<double> series;
-  std::vector<std::vector<double>> tables;  // of each measurement, as measurement_rows() has them
-  double until = 0;
-};
-
 DecimalColumn series_times(const Scene& scene);
 
 /// The tables of a result in their order: those that grow and those at times,

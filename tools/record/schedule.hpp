@@ -30,7 +30,7 @@ class Times {
   std::size_t first_from(const Number& time) const;
   std::size_t first_after(const Number& time) const;
   bool hold(const Number& time) const;
-  std::vector<double> rounded() const;
+  std::vector<double> rounded() const;  // the decimals, as results store them
   std::optional<RunTime> find(const Number& time) const;
   /// The decimal of `time`, which must be one of these times.
   std::string_view decimal(const Number& time) const { return decimals_[first_from(time)]; }

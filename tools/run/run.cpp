@@ -1,6 +1,6 @@
 #include "cradle/tools/run/run.hpp"
 
-#include "cradle/tools/record/schedule.hpp"
+#include "cradle/tools/record/rows.hpp"
 #include "cradle/tools/run/clusters.hpp"
 #include "cradle/tools/run/scene_run.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
@@ -36,13 +36,6 @@ void check_built(const Scene& scene) {
     if (scene.initial.on_ring()) not_built("run.coordinates", "absolute on a ring", "gaps");
   }
   set_digits(scene);
-}
-
-PlannedTimes planned_times(const Scene& scene) {
-  const Schedule plan(scene);
-  PlannedTimes times{plan.series().rounded(), {}, scene.run.until.value};
-  for (const MeasurementTimes& each : plan.of) times.tables.push_back(each.tables.rounded());
-  return times;
 }
 
 Scene without_tables(Scene scene) {

@@ -54,9 +54,6 @@ Scene scene_in(const std::vector<Attribute>& attributes, const std::string& file
 /// Throws Error, naming the key, for a scene that this build cannot run; sets the digits.
 void check_built(const Scene& scene);
 
-/// The times of its tables. Throws Error for a scalar type that this build does not have.
-PlannedTimes planned_times(const Scene& scene);
-
 /// The scene without tables that are only written: it makes the same collisions, and its series is the same.
 Scene without_tables(Scene scene);
 

@@ -176,11 +176,18 @@ Scene scene_of(const Entries& entries, const std::string& source_name) {
   return scene;
 }
 
-struct SceneText {
-  std::string text, source;
-};
+}  // namespace
 
-SceneText text_of(const std::string& path_or_name) {
+Scene parse_scene(std::string_view text, const std::string& source_name, const std::vector<std::string>& overrides) {
+  Entries entries = read_entries(text, source_name);
+  const std::string left_out = apply_overrides(entries, overrides);
+  gather_tables(entries);
+  Scene scene = scene_of(entries, source_name);
+  scene.remarks.insert(0, left_out);
+  return scene;
+}
+
+Scene read_scene(const std::string& path_or_name, const std::vector<std::string>& overrides) {
   std::error_code unreadable;
   const bool exists = std::filesystem::exists(path_or_name, unreadable);
   if (exists && !std::filesystem::is_directory(path_or_name, unreadable)) {
@@ -196,32 +203,12 @@ SceneText text_of(const std::string& path_or_name) {
                   fmt::format("give the scene file, or the csv/scene.toml that `cradle export {0} --to csv` writes; "
                               "`cradle info {0}` shows what is in it",
                               path_or_name));
-    return {std::move(text), path_or_name};
+    return parse_scene(text, path_or_name, overrides);
   }
   for (const BundledScene& scene : bundled_scenes())
-    if (scene.name == path_or_name) return {std::string(scene.text), path_or_name + ".toml"};
+    if (scene.name == path_or_name) return parse_scene(scene.text, path_or_name + ".toml", overrides);
   throw Error({path_or_name, 0, {}}, "no such scene", exists ? "a folder" : "neither a file nor a bundled scene",
               similar_scene(path_or_name), Exit::io);
-}
-
-}  // namespace
-
-Scene parse_scene(std::string_view text, const std::string& source_name, const std::vector<std::string>& overrides) {
-  Entries entries = read_entries(text, source_name);
-  apply_overrides(entries, overrides);
-  gather_tables(entries);
-  return scene_of(entries, source_name);
-}
-
-Scene read_scene(const std::string& path_or_name, const std::vector<std::string>& overrides) {
-  const SceneText scene = text_of(path_or_name);
-  return parse_scene(scene.text, scene.source, overrides);
-}
-
-std::string times_left_out(const std::string& path_or_name, const std::vector<std::string>& overrides) {
-  const SceneText scene = text_of(path_or_name);
-  Entries entries = read_entries(scene.text, scene.source);
-  return apply_overrides(entries, overrides);
 }
 
 }  // namespace cradle::tools

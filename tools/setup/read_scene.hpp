@@ -13,16 +13,13 @@ namespace cradle::tools {
 
 /// Reads the scene file at this path or, if there is none, the bundled scene of this name. Each override is
 /// `table.key=value`, with the value in TOML syntax (bare words are strings), and replaces the value in the file; an
-/// empty value removes the key. Throws Error: Exit::io if nothing can be read, Exit::bad_input for wrong contents.
+/// empty value removes the key. The remarks of the scene name its times that a new run.start or run.until leaves out.
+/// Throws Error: Exit::io if nothing can be read, Exit::bad_input for wrong contents.
 Scene read_scene(const std::string& path_or_name, const std::vector<std::string>& overrides = {});
 
 /// The same from text. Messages name `source_name`; its stem is the scene's name, and its folder is searched for a list
 /// of particles.
 Scene parse_scene(std::string_view text, const std::string& source_name,
                   const std::vector<std::string>& overrides = {});
-
-/// A line for the user if a new run.start or run.until leaves out times of the scene that read_scene reads, else
-/// nothing. Throws Error as read_scene does.
-std::string times_left_out(const std::string& path_or_name, const std::vector<std::string>& overrides);
 
 }  // namespace cradle::tools

@@ -10,6 +10,7 @@
 #include "cradle/precision/bin_float.hpp"
 #endif
 #include "cradle/tools/scene/checks.hpp"
+#include "cradle/tools/scene/decimal_parts.hpp"
 
 namespace cradle::tools {
 
@@ -29,19 +30,13 @@ std::string WordParticles::text() const {
   return text + (left_wall ? " right of a wall" : right_wall ? " left of a wall" : "");
 }
 
-std::string cut_off(std::string number, unsigned digits) {
-  const auto e = number.find('e');
-  const int exponent = e == number.npos ? 0 : std::stoi(number.substr(e + 1));
-  std::string mantissa = number.substr(0, e);
-  const bool negative = mantissa.starts_with('-');
-  if (negative) mantissa.erase(0, 1);
-  auto point = static_cast<int>(std::min(mantissa.find('.'), mantissa.size()));
-  std::erase(mantissa, '.');
-  point += exponent;
-  if (point <= 0) mantissa.insert(0, static_cast<std::size_t>(1 - point), '0'), point = 1;
-  const auto whole = static_cast<std::size_t>(point);
-  mantissa.resize(whole + digits, '0');
-  return (negative ? "-" : "") + mantissa.substr(0, whole) + '.' + mantissa.substr(whole);
+std::string cut_off(std::string_view number, unsigned digits) {
+  auto [negative, all, power] = literal_of(number);
+  // The digits up to the last one that is kept, one before the point at least.
+  all.resize(static_cast<std::size_t>(std::max<std::int64_t>(0, std::ssize(all) + power + digits)), '0');
+  if (all.size() <= digits) all.insert(0, digits + 1 - all.size(), '0');
+  all.insert(all.size() - digits, ".");
+  return (negative ? "-" : "") + all;
 }
 
 namespace {

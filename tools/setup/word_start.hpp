@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "cradle/core/words/ranges.hpp"
@@ -33,7 +34,7 @@ struct WordStart {
 };
 
 /// A decimal number with so many digits after the point; what follows is cut off.
-std::string cut_off(std::string number, unsigned digits);
+std::string cut_off(std::string_view number, unsigned digits);
 
 template <class N> words::Shares<N> shares_in(const WordParticles& particles) {
   std::vector<N> masses(particles.particles, N(1));

@@ -5,6 +5,7 @@
 #include <array>
 #include <filesystem>
 
+#include "cradle/tools/record/schedule.hpp"
 #include "cradle/tools/result/growing_tables.hpp"
 #include "cradle/tools/result/reader.hpp"
 #include "cradle/tools/run/run.hpp"
@@ -106,7 +107,7 @@ std::vector<Group> recorded(std::vector<Group> groups, const Scene& scene) {
     std::stable_sort(table.attributes.begin(), table.attributes.end(),
                      [&](const Attribute& a, const Attribute& b) { return rank(a) < rank(b); });
   // Removes a sample at the end that is there only because the run ended.
-  const std::vector<double> planned = planned_times(scene).series;
+  const std::vector<double> planned = Schedule(scene).series().rounded();
   const auto one_too_many = [&](const Group& table) {
     if (table.name != "series" || table.columns.empty()) return false;
     const auto* taken = std::get_if<std::vector<double>>(&table.columns.front().values);
@@ -143,7 +144,7 @@ void RunFiles::resume(const std::optional<std::string>& until) {
   if (!state_ && header_.extends) return resume_from_result(until ? *until : scene_.run.until.text);
   const CheckpointHeader found = state_ ? state_->header() : CheckpointHeader();
   const bool later = until && Decimal(*until) != scene_.run.until;
-  if (later && state_ && !(found.time < planned_times(scene_).until))
+  if (later && state_ && !(found.time < scene_.run.until.value))
     throw Error({file_, 0, ""}, "not written yet", "the run has reached its end",
                 fmt::format("finish it first: `cradle resume {}`", file_));
   if (later && begins_again(scene_)) {
@@ -197,7 +198,7 @@ void RunFiles::resume_from_result(const std::optional<std::string>& until) {
     state_ = std::make_unique<StateReader>(state);
     const CheckpointHeader& found = state_->header();
     header_.every_seconds = found.run.every_seconds;
-    if (found.run.scene != effective_toml(scene_) || found.time != planned_times(scene_).until)
+    if (found.run.scene != effective_toml(scene_) || found.time != scene_.run.until.value)
       throw Error({state, 0, ""}, "not the end of this run", fmt::format("t = {:.10g}", found.time),
                   "run the scene with a later run.until", Exit::io);
     if (begins_again(scene_)) state_.reset();

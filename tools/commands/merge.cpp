@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 #include "cradle/tools/commands/commands.hpp"
-#include "cradle/tools/ensemble/merge.hpp"
+#include "cradle/tools/ensemble/ensemble_store.hpp"
 #include "cradle/tools/result/writer.hpp"
 
 namespace cradle::tools {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "cradle/tools/ensemble/sweep.hpp"
 #include "cradle/tools/result/reader.hpp"
 #include "cradle/tools/result/writer.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
@@ -240,7 +241,7 @@ Result EnsembleStore::result() const {
                        {"outcome", outcome()},
                        {"replicas", replicas()},
                        {"identity", identity_}};
-  if (study_.summary) result.groups = study_.summary(states_);
+  if (study_.kind == "sweep") result.groups.push_back(sweep_summary(study_.scene.sweep, states_));
   for (const auto& state : states_)
     for (Group& group : state->groups()) result.groups.push_back(std::move(group));
   return result;

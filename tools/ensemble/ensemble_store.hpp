@@ -12,6 +12,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <shared_mutex>
@@ -28,8 +29,6 @@ namespace cradle::tools {
 JournalHeader header_in(const Result& result, const std::string& file, const char* otherwise);
 /// The study of a journal of replicas. Throws Error (Exit::io) naming the journal.
 Study study_in(const JournalHeader& journal, const std::string& path);
-/// The study of a result file, once the scenes in it are known to be those of its replicas. Throws Error naming it.
-Study study_in(const Result& result, const std::string& file);
 
 class EnsembleStore {
  public:
@@ -99,5 +98,10 @@ class EnsembleStore {
   std::mutex appending_;       // to the journal, and for its length and the time of its last sync
   std::chrono::steady_clock::time_point synced_ = std::chrono::steady_clock::now();
 };
+
+/// Ensembles or sweeps of the same scene with different replicas, as one: all replicas of all files. Throws Error:
+/// Exit::bad_input if the files have different scenes or share replicas; Exit::io if a file cannot be read or is
+/// damaged.
+std::unique_ptr<EnsembleStore> merged(const std::vector<std::string>& files);
 
 }  // namespace cradle::tools

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -25,7 +24,6 @@ struct Study {
   Scene scene;  // the file's; for a sweep the scene that is varied
   std::vector<Point> points;
   std::vector<SpreadRequest> spreads = {};
-  std::function<std::vector<Group>(const EnsembleStates&)> summary = {};  // written before the points
 
   /// Equal for the same ensembles by the same version of the program.
   std::uint64_t identity() const;

@@ -1,10 +1,11 @@
-// Which study a journal or a result file belongs to, by its own account.
+// Which study a journal or a result file belongs to, by its own account, and several files as one.
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "cradle/tools/ensemble/ensemble_store.hpp"
 #include "cradle/tools/ensemble/sweep.hpp"
+#include "cradle/tools/result/reader.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
 #include "cradle/tools/store/run_journal.hpp"
 
@@ -40,16 +41,22 @@ JournalHeader header_in(const Result& result, const std::string& file, const cha
 namespace {
 
 Study study_described(const JournalHeader& header, const std::string& path, const Error& of_other_scenes) {
-  const Scene scene = scene_of(header, path);
-  const auto scene_at = [&](const std::string& group) {
-    const auto at = std::ranges::find(header.points, group, &std::pair<std::string, std::string>::first);
-    if (at == header.points.end())
-      throw Error({path, 0, ""}, "a sweep without one of its points", group, "make it anew, or remove it", Exit::io);
-    return parse_scene(at->second, path);
-  };
-  Study study = header.kind == "sweep" ? sweep_at(scene, scene_at) : ensemble_of(scene, header.spreads);
+  Study study{header.kind, scene_of(header, path), {}, header.spreads};
+  for (const auto& [group, scene] : header.points) {
+    study.points.push_back({group, parse_scene(scene, path)});
+    study.points.back().scene.name = header.name;
+  }
   if (study.identity() != header.identity) throw of_other_scenes;
+  // The identity is that of the points, not of the scene that is varied.
+  if (const std::size_t n = study.points.size(); study.kind == "sweep" && sweep_points(study.scene.sweep).size() != n)
+    throw Error({path, 0, ""}, "a sweep with other points than its scene", fmt::format("{} points", n),
+                "make it anew, or remove it", Exit::io);
   return study;
+}
+
+std::string describe(const std::vector<ReplicaRange>& ranges) {
+  const std::string several = ranges.size() > 1 ? fmt::format("{} ranges, ", ranges.size()) : "";
+  return fmt::format("{}{} to {}", several, ranges.front().first, ranges.back().end() - 1);
 }
 
 }  // namespace
@@ -63,12 +70,27 @@ Study study_in(const JournalHeader& journal, const std::string& path) {
                           Exit::io});
 }
 
-Study study_in(const Result& result, const std::string& file) {
-  return study_described(header_in(result, file, "give a file that `cradle ensemble` or `cradle sweep` wrote"), file,
-                         {{file, 0, ""},
-                          "cannot be merged here",
-                          "another version's file, or a scene that was changed in it",
-                          "use the program that wrote it"});
+std::unique_ptr<EnsembleStore> merged(const std::vector<std::string>& files) {
+  const std::string& first = files.front();
+  const Study study = study_described(
+      header_in(read_result(first), first, "give a file that `cradle ensemble` or `cradle sweep` wrote"), first,
+      {{first, 0, ""},
+       "cannot be merged here",
+       "another version's file, or a scene that was changed in it",
+       "use the program that wrote it"});
+  auto all = std::make_unique<EnsembleStore>(study, "");
+  for (const std::string& file : files) {
+    EnsembleStore one(study, file);
+    one.load_result("leave it out, since files of one scene with the same --spread are merged");
+    for (std::size_t k = 0; k < all->states().size(); ++k) {
+      EnsembleState &into = *all->states()[k], &from = *one.states()[k];
+      if (into.holds_any_of(from))
+        throw Error({file, 0, ""}, "has replicas that another of the files has too",
+                    describe(from.replicas().present()), "merge files of different replicas (--first)");
+      into.take(from);
+    }
+  }
+  return all;
 }
 
 }  // namespace cradle::tools

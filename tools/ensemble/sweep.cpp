@@ -3,15 +3,87 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 
-#include "cradle/tools/ensemble/sweep_points.hpp"
 #include "cradle/tools/scene/source.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
 
 namespace cradle::tools {
 
 namespace {
+
+std::vector<std::string> split(const std::string& text, char separator) {
+  std::vector<std::string> parts(1);
+  for (const char c : text)
+    if (c == separator)
+      parts.emplace_back();
+    else
+      parts.back() += c;
+  return parts;
+}
+
+struct Varied {
+  std::string key;
+  std::vector<std::string> values;
+};
+
+Varied varied(const std::string& text, double most) {
+  const auto wrong = [&](const std::string& what) {
+    return Error({"", 0, "--vary"}, what, text, "give KEY=FROM:TO:COUNT, KEY=FROM:TO:COUNT:log or KEY=VALUE,VALUE,...");
+  };
+  const auto equals = text.find('=');
+  if (equals == text.npos || equals == 0 || equals + 1 == text.size()) throw wrong("not a key and values");
+  Varied result{text.substr(0, equals), {}};
+  const std::string values = text.substr(equals + 1);
+  const auto parts = split(values, ':');
+  if (parts.size() == 1) {
+    result.values = split(values, ',');
+    return result;
+  }
+  const bool logarithmic = parts.size() == 4 && parts[3] == "log";
+  if (parts.size() != 3 && !logarithmic) throw wrong("not a range of values");
+  const auto from = to_number(parts[0]), to = to_number(parts[1]), count = to_number(parts[2]);
+  if (!from || !to || !count || *count < 2 || *count > most || *count != std::floor(*count))
+    throw wrong("not a range of 2 values or more");
+  if (logarithmic && !(*from > 0 && *to > 0)) throw wrong("no logarithms of these ends");
+  const auto last = static_cast<int>(*count) - 1;
+  for (int k = 0; k <= last; ++k) {
+    const double share = static_cast<double>(k) / last;
+    const double value = logarithmic ? *from * std::pow(*to / *from, share) : *from + (*to - *from) * share;
+    // Twelve digits, so that 0.1 + 0.2 becomes 0.3.
+    result.values.push_back(k == 0 ? parts[0] : k == last ? parts[1] : fmt::format("{:.12g}", value));
+  }
+  return result;
+}
+
+SweepPoint given_point(const std::string& text) {
+  SweepPoint point;
+  for (const std::string& assignment : split(text, ' ')) {
+    if (assignment.empty()) continue;
+    const auto equals = assignment.find('=');
+    if (equals == assignment.npos || equals == 0)
+      throw Error({"", 0, "--point"}, "not keys and values", text, "give KEY=VALUE KEY=VALUE ...");
+    point.emplace_back(assignment.substr(0, equals), assignment.substr(equals + 1));
+  }
+  return point;
+}
+
+// Called before memory is allocated. A point of a grid has a value for every key.
+void check_count(const std::vector<Varied>& keys, bool cuts, double most) {
+  double points = cuts ? 0 : 1;
+  for (const Varied& one : keys) {
+    const auto values = static_cast<double>(one.values.size());
+    points = cuts ? points + values : points * values;
+  }
+  if (points > most)
+    throw Error({"", 0, "--vary"}, "too many points", fmt::format("{:.3g}", points),
+                fmt::format("vary fewer keys or give fewer values, {:.0g} points at most", most));
+  const double values = points * static_cast<double>(cuts ? 1 : keys.size());
+  if (values > 8 * most)
+    throw Error({"", 0, "--vary"}, "too many values", fmt::format("{:.3g} in all points", values),
+                fmt::format("vary fewer keys or give fewer values, {:.0g} at most", 8 * most));
+}
 
 // Columns of numbers, one row per point, added in the order of first use; NaN if a point has no value.
 struct Table {
@@ -42,8 +114,57 @@ void put_mean(Table& table, std::size_t point, const Column& about, const std::v
   table.put(point, about.name + "_replicas", "1", "replicas that have this number", n);
 }
 
-// `/sweep`: what was varied, how many replicas ended, and means over them with standard errors; a row per point.
-Group sweep_summary(const std::vector<SweepPoint>& points, const EnsembleStates& states) {
+}  // namespace
+
+std::optional<double> to_number(const std::string& text) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+std::string point_label(const SweepPoint& point) {
+  std::string text;
+  for (const auto& [key, value] : point) text += (text.empty() ? "" : " ") + key + "=" + value;
+  return text;
+}
+
+std::vector<SweepPoint> sweep_points(const Sweep& sweep, double most) {
+  std::vector<SweepPoint> points;
+  for (const std::string& text : sweep.points) points.push_back(given_point(text));
+  std::vector<Varied> keys;
+  for (const std::string& text : sweep.vary) {
+    keys.push_back(varied(text, most));
+    check_count(keys, sweep.cuts, most);
+  }
+  if (sweep.cuts) {
+    for (const Varied& one : keys)
+      for (const std::string& value : one.values) points.push_back({{one.key, value}});
+  } else if (!keys.empty()) {
+    std::vector<SweepPoint> grid(1);
+    for (const Varied& one : keys) {
+      std::vector<SweepPoint> finer;
+      for (const SweepPoint& point : grid)
+        for (const std::string& value : one.values) {
+          finer.push_back(point);
+          finer.back().emplace_back(one.key, value);
+        }
+      grid = std::move(finer);
+    }
+    points.insert(points.end(), grid.begin(), grid.end());
+  }
+  if (points.empty())
+    throw Error({"", 0, "--vary"}, "nothing to vary", "",
+                "give --vary KEY=FROM:TO:COUNT, or --point, or a scene with a table [sweep]");
+  for (const SweepPoint& point : points)
+    for (auto at = point.begin(); at != point.end(); ++at)
+      if (std::any_of(point.begin(), at, [&](const auto& before) { return before.first == at->first; }))
+        throw Error({"", 0, at->first}, "twice in a point of the sweep", point_label(point), "give one of the two");
+  return points;
+}
+
+Group sweep_summary(const Sweep& sweep, const EnsembleStates& states) {
+  const std::vector<SweepPoint> points = sweep_points(sweep);
   Table table{points.size()};
   Group group{"sweep", {}, {}};
   for (std::size_t p = 0; p < points.size(); ++p) {
@@ -73,23 +194,6 @@ Group sweep_summary(const std::vector<SweepPoint>& points, const EnsembleStates&
   return group;
 }
 
-// The study of a scene that names the sweep; scene_at(point) gives the scene of each point.
-template <class SceneAt> Study study_of(Scene scene, SceneAt scene_at) {
-  const auto points = sweep_points(scene.sweep);
-  Study study;
-  study.kind = "sweep";
-  study.scene = std::move(scene);
-  study.scene.sweep.replicas = 1;  // the number of replicas is not part of the study
-  for (std::size_t p = 0; p < points.size(); ++p) {
-    const std::string group = fmt::format("points/{:04}", p);
-    study.points.push_back({group, scene_at(points[p], group)});
-  }
-  study.summary = [points](const EnsembleStates& states) { return std::vector<Group>{sweep_summary(points, states)}; };
-  return study;
-}
-
-}  // namespace
-
 Study sweep_of(const std::string& scene, const std::vector<std::string>& overrides, const Sweep& sweep) {
   Scene varied = read_scene(scene, overrides);
   varied.sweep = sweep;
@@ -102,22 +206,17 @@ Study sweep_of(const std::string& scene, const std::vector<std::string>& overrid
     if (std::ranges::all_of(points, sets))
       throw Error({"--set", 0, key}, "every point of the sweep sets it too", given, "leave out one of the two");
   }
-  return study_of(std::move(varied), [&](const SweepPoint& point, const std::string&) {
+  Study study{.kind = "sweep", .scene = std::move(varied), .points = {}};
+  study.scene.sweep.replicas = 1;  // the number of replicas is not part of the study
+  for (std::size_t p = 0; p < points.size(); ++p) {
     std::vector<std::string> all = overrides;
-    for (const auto& [key, value] : point) all.push_back(key + "=" + value);
+    for (const auto& [key, value] : points[p]) all.push_back(key + "=" + value);
     Scene at = read_scene(scene, all);
     at.sweep = {};
     at.sweep.replicas = 1;
-    return at;
-  });
-}
-
-Study sweep_at(const Scene& scene, const std::function<Scene(const std::string& group)>& scene_at) {
-  return study_of(scene, [&](const SweepPoint&, const std::string& group) {
-    Scene at = scene_at(group);
-    at.name = scene.name;
-    return at;
-  });
+    study.points.push_back({fmt::format("points/{:04}", p), std::move(at)});
+  }
+  return study;
 }
 
 }  // namespace cradle::tools

@@ -4,7 +4,6 @@
 #include <functional>
 
 #include "cradle/tests/tools/ensemble/ensembles.hpp"
-#include "cradle/tools/ensemble/merge.hpp"
 #include "cradle/tools/ensemble/state.hpp"
 #include "cradle/tools/result/writer.hpp"
 
@@ -32,6 +31,18 @@ class DamagedEnsembles : public Ensembles {
       if (key == name) old = value;
   }
 };
+
+TEST_F(DamagedEnsembles, ASweepHasThePointsOfItsScene) {
+  run("sweep shock.toml --vary law.restitution=0.9,0.99 --replicas 1 -o a.h5 --force");
+  const std::string found = merging([](Result& sweep) {
+    for (auto& [name, value] : sweep.attributes)
+      if (name == "scene") {
+        auto& scene = std::get<std::string>(value);
+        scene.replace(scene.find("0.9,0.99"), 8, "0.9,0.99,1");
+      }
+  });
+  EXPECT_TRUE(has(found, "a sweep with other points than its scene (found 2 points)")) << found;
+}
 
 // Found by fuzzing behind the checksums of journals: each of these was an exception that names no file.
 TEST(DamagedRecords, AreRefused) {

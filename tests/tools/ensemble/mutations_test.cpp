@@ -10,7 +10,6 @@
 #include "cradle/tests/tools/mutator.hpp"
 #include "cradle/tests/tools/result/result_files.hpp"
 #include "cradle/tools/commands/listing.hpp"
-#include "cradle/tools/ensemble/merge.hpp"
 
 namespace cradle::tests::mutations_test {
 

@@ -1,6 +1,6 @@
 // Texts that need a large header of Boost: those of double-doubles and of the balls around them; and the list of names.
 // Most are made in fixed point. What does not fit there takes a type that holds the sum of any two doubles and of a
-// radius exactly (from 2^1024 down to 2^-1074), so that a conversion rounds once.
+// radius exactly (from 2^1024 down to 2^-1074), so that a conversion rounds once, unless a shorter type decides it.
 #include <algorithm>
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <cstddef>
@@ -16,9 +16,29 @@
 namespace cradle {
 namespace {
 
-using Wide =
-    boost::multiprecision::number<boost::multiprecision::cpp_bin_float<3300, boost::multiprecision::digit_base_2>,
+template <unsigned bits>
+using Binary =
+    boost::multiprecision::number<boost::multiprecision::cpp_bin_float<bits, boost::multiprecision::digit_base_2>,
                                   boost::multiprecision::et_off>;
+using Wide = Binary<3300>;
+using Near = Binary<256>;  // holds most sums of two doubles, and is several times as fast
+
+template <class Number> double_double rounded(const Number& exact) {
+  const auto high = static_cast<double>(exact);
+  return std::isfinite(high) ? double_double::sum(high, static_cast<double>(Number(exact - high)))
+                             : double_double(high);
+}
+template <class Number> std::string written(const double_double& x, int digits) {
+  return Number(Number(x.high()) + x.low()).str(digits);
+}
+bool near(const double_double& x) { return x.low() == 0 || std::ilogb(x.high()) - std::ilogb(x.low()) < 150; }
+
+// The number of a decimal, if both ends of the error interval of Near round to it: rounding is monotonic.
+std::optional<double_double> by_near(const std::string& text) {
+  const Near middle(text), off = ldexp(Near(abs(middle)), -240);
+  const double_double one_end = rounded(Near(middle - off));
+  return one_end == rounded(Near(middle + off)) ? std::optional(one_end) : std::nullopt;
+}
 
 // Whether a decimal that is `off` from high + low is rounded to that, unless this depends on the side.
 std::optional<bool> reads_as(double high, double low, double off) {
@@ -62,7 +82,7 @@ std::string written_in_fixed_point(const double_double& x, int digits, std::opti
   return sign + text + std::string(whole - text.size(), '0');
 }
 
-// The number of a decimal, if both ends of what fixed point leaves open round to it: rounding is monotonic.
+// The same of what fixed point leaves open.
 std::optional<double_double> in_fixed_point(std::string_view text) {
   const bool negative = text.starts_with('-');
   if (negative || text.starts_with('+')) text.remove_prefix(1);
@@ -70,14 +90,14 @@ std::optional<double_double> in_fixed_point(std::string_view text) {
   auto number = FixedPoint::decimal(text, is_exact);
   if (!number) return {};
   if (is_exact && number->is_zero()) return double_double(0);
-  const auto rounded = [sign = negative ? -1. : 1.](FixedPoint exact) {
+  const auto nearest = [sign = negative ? -1. : 1.](FixedPoint exact) {
     const double high = exact.nearest();
     return exact.add(-high) ? std::optional(double_double::sum(sign * high, sign * exact.nearest())) : std::nullopt;
   };
-  const auto x = rounded(*number);
+  const auto x = nearest(*number);
   if (!is_exact) {
     number->add_units(2);
-    if (rounded(*number) != x) return {};
+    if (nearest(*number) != x) return {};
   }
   return x;
 }
@@ -98,9 +118,8 @@ std::string decimal_beside(const Wide& x, int digits, bool below) {
 double_double Text<double_double>::from(std::string_view literal) {
   const std::string text = checked_literal(literal);
   if (const auto x = in_fixed_point(text)) return *x;
-  const Wide exact(text);
-  const auto high = static_cast<double>(exact);
-  return std::isfinite(high) ? double_double::sum(high, static_cast<double>(Wide(exact - high))) : double_double(high);
+  const auto quick = by_near(text);
+  return quick ? *quick : rounded(Wide(text));
 }
 
 std::string Text<double_double>::to(const double_double& x) {
@@ -108,7 +127,7 @@ std::string Text<double_double>::to(const double_double& x) {
   for (int digits = 32;; digits += 8) {
     std::optional<bool> same;
     std::string text = written_in_fixed_point(x, digits, same);
-    if (text.empty()) text = Wide(Wide(x.high()) + x.low()).str(digits);
+    if (text.empty()) text = near(x) ? written<Near>(x, digits) : written<Wide>(x, digits);
     if (digits > 700 || (same ? *same : from(text) == x)) return text;
   }
 }

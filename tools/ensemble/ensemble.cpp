@@ -46,17 +46,25 @@ std::string failure_warning(const EnsembleStates& states, const std::string& fil
   constexpr int shown = 5;
   std::string text, first, groups;
   int failures = 0;
+  bool unproved = false;
   for (const auto& state : states) {
     const std::string& group = state->group();
     const auto failed = state->failures();
-    for (const auto& [replica, message] : failed)
+    const Scene& scene = state->scene();
+    for (const auto& [replica, message] : failed) {
       if (++failures <= shown)
         text += fmt::format("{}replica {} failed: {}\n", group.empty() ? "" : group + ": ", replica, message);
+      unproved =
+          unproved || (message == end_row(RunEnd::exhausted).text && stops_at_collapse(scene) && !scene.run.stop_gap);
+    }
     if (failed.empty()) continue;
     if (first.empty()) first = alone_command(file, group, failed.begin()->first);
     groups += fmt::format("{}/{}replicas/failed", groups.empty() ? "" : ", ", group.empty() ? "" : group + "/");
   }
   if (failures > shown) text += fmt::format("and {} more: see {} in {}\n", failures - shown, groups, file);
+  if (unproved)
+    text += "a collapse of more than three particles is not proved: with run.stop_gap (a gap of 1e-12, say) these "
+            "replicas end there and have collapsed\n";
   if (failures > 0) text += fmt::format("the first of them again, alone: {}\n", first);
   return text;
 }

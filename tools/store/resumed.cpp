@@ -59,7 +59,7 @@ Scene extended(Scene scene, const std::string& until, const std::string& file) {
 
 // Lists of times are not extended: of a run that was cut short by --set run.until they have lost the times of the scene
 // that came later. Of a bundled scene these are known; of another one, snapshots that end before the run may have been
-// cut off.
+// cut off. (If there are none, as a rule there were none.)
 std::string lists_not_extended(const Scene& scene, const Decimal& later) {
   const auto bundled = bundled_scenes();
   const auto at = std::find_if(bundled.begin(), bundled.end(),
@@ -79,7 +79,7 @@ std::string lists_not_extended(const Scene& scene, const Decimal& later) {
     for (const MeasurementRow* row : measurement_rows())
       if (row->times) check(row->key, lost(row->times(original->output)));
   } else {
-    check("output.snapshots", snapshots.empty() || snapshots.back() < scene.run.until);
+    check("output.snapshots", !snapshots.empty() && snapshots.back() < scene.run.until);
   }
   if (keys.empty()) return "";
   return fmt::format("lists of times are not extended beyond t = {} ({}): to have later times of the scene, run it "

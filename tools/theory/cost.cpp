@@ -85,8 +85,21 @@ double share_of_elastic(double s) {
 
 // A run of many particles that ends by itself although no collapse is proved.
 bool ends_unproved(const Scene& scene) {
+  const auto held = scene.initial.type == InitialType::list ? scene.initial.x.size() : scene.initial.particles;
   return !scene.run.stop_gap && scene.run.coordinates == Coordinates::gaps &&
-         scene.initial.particles > static_cast<std::uint64_t>(CollapseWatch<double>::few);
+         held > static_cast<std::uint64_t>(CollapseWatch<double>::few);
+}
+
+// A line, if a collapse of so many particles does not end: in these types numbers hardly leave their range.
+std::string endless_collapse(const Scene& scene, double particles) {
+  const bool wide = scene.run.precision == Precision::mpfr || scene.run.precision == Precision::cpp_bin_float;
+  const bool ends = scene.run.stop_gap || ends_unproved(scene) || scene.law.cutoff_exponent;
+  const auto onset = theory::collapse_onset_particles(scene.law.restitution.value);
+  const bool collapses = unequal_masses(scene) || scene.walls.any() || particles >= onset.value_or(particles + 1);
+  if (!wide || ends || !onset || !collapses || particles < 4 || !stops_at_collapse(scene)) return "";
+  return fmt::format(
+      "in {} a run that comes to a collapse of more than three particles has no end: give run.stop_gap\n",
+      scalar_row(scene.run.precision).name);
 }
 
 double deviation(const std::optional<Decimal>& temperature) { return std::sqrt(temperature->value); }
@@ -155,8 +168,7 @@ std::string end_line(const Scene& scene) {
   const std::string unproved =
       scene.run.stop_gap     ? fmt::format("a gap is below run.stop_gap = {}", scene.run.stop_gap->text)
       : ends_unproved(scene) ? "a gap is below 2^-100 of one beside it at the start"
-                             : "numbers leave the range of the type (status 5), which may take long: run.stop_gap "
-                               "ends it sooner";
+                             : "numbers leave their range (status 5), which may take long without run.stop_gap";
   return fmt::format("the run ends (status 3) where a collapse is proved or, without proof, {}; to go past it: "
                      "law.cutoff, or run.collapse = \"merge\" with a run.merge_speed\nin the collapse more collisions "
                      "follow, how many is not known beforehand (of 200 particles some 1e7 at restitution 0.9, unless "
@@ -212,6 +224,7 @@ Cost expected_cost(const Scene& scene) {
   const std::string floor = collapsing_floor(scene);
   cost.floor =
       !floor.empty() && !(floor == "walls.left" ? scene.walls.left : scene.walls.right).rest_speed && !cost.collisions;
+  cost.endless = endless_collapse(scene, cost.particles);
   const ScalarRow& type = scalar_row(scene.run.precision);
   const std::uint64_t digits = scene.run.digits;
   const bool gaps = scene.run.coordinates == Coordinates::gaps;
@@ -243,9 +256,10 @@ std::string expected_lines(const Scene& scene, const Cost& cost) {
     const std::string floor = collapsing_floor(scene);
     const bool endless = (loses || !floor.empty()) && !particles_merge(scene) && !stops_at_collapse(scene);
     return fmt::format(
-        "collisions and time: there is no estimate for this scene{}{}\n",
+        "collisions and time: there is no estimate for this scene{}{}\n{}",
         endless ? "; where particles collapse they may be very many" : "",
-        endless && cost.floor ? fmt::format(": with {}.rest_speed they come to rest there instead", floor) : "");
+        endless && cost.floor ? fmt::format(": with {}.rest_speed they come to rest there instead", floor) : "",
+        cost.endless);
   }
   const auto* after = stops_at_collapse(scene) ? "where the run stops"
                       : particles_merge(scene) ? "after which particles merge"
@@ -256,13 +270,12 @@ std::string expected_lines(const Scene& scene, const Cost& cost) {
   if (cost.clustering)
     text += fmt::format(" until particles cluster at about t = {}, by Haff's law; how many follow is not known{}",
                         about(*cost.clustering, 3), stops_at_collapse(scene) ? ", until clusters collapse" : "");
-  text += '\n';
-  return cost.collapse || cost.clustering ? text + end_line(scene) : text;
+  return text + '\n' + (cost.collapse || cost.clustering ? end_line(scene) : "") + cost.endless;
 }
 
 std::string expected_warning(const Scene& scene) {
   const Cost cost = expected_cost(scene);
-  return (cost.collapse || cost.clustering) && !particles_merge(scene) ? expected_lines(scene, cost) : "";
+  return (cost.collapse || cost.clustering) && !particles_merge(scene) ? expected_lines(scene, cost) : cost.endless;
 }
 
 Threading expected_threading(const Scene& scene, const Cost& cost, unsigned threads) {

@@ -15,6 +15,7 @@ struct Cost {
   std::optional<double> collapse;    // of inelastic collapse, if before the end; collisions: until then
   std::optional<double> clustering;  // of a gas that cools, likewise
   bool floor = false;                // on which particles may collapse, at a time that is not known
+  std::string endless = {};          // a line, if nothing ends the run where particles collapse
   double collisions_per_second = 0;
   double memory = 0;  // bytes
 

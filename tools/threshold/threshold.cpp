@@ -11,6 +11,7 @@
 #include "cradle/tools/result/reader.hpp"
 #include "cradle/tools/store/journal.hpp"
 #include "cradle/tools/support/threads.hpp"
+#include "cradle/tools/theory/cost.hpp"
 #include "cradle/tools/threshold/exact_collapse.hpp"
 
 namespace cradle::tools {
@@ -115,6 +116,11 @@ class Search {
       if (!wide && question_.wide_from_the_start()) continue;
       const auto scene = question_.scene_at(value, wide);
       if (!scene) continue;
+      if (!expected_cost(*scene).endless.empty()) {
+        last = fmt::format("a collapse of more than three particles is not proved, and does not end in {}",
+                           precision_name(scene->run));
+        continue;
+      }
       const RunOutcome run =
           run_scene(without_tables(*scene), {Progress::Show::never, nullptr, &options_.interrupt, workers(threads_)});
       if (run.end == RunEnd::interrupted) throw interrupted(options_.interrupt);
@@ -125,7 +131,7 @@ class Search {
     throw Error(
         {"", 0, "--vary"}, "a run without an outcome", fmt::format("{} = {}: {}", question_.key(), value.text, last),
         "give fewer --digits or a range that ends before, a type of more digits (run.precision, run.digits), or "
-        "compare another outcome (--outcome)",
+        "compare another outcome (--outcome gap with a run.stop_gap, say)",
         Exit::lost);
   }
 

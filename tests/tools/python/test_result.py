@@ -1,5 +1,6 @@
 """What `cradle.open` gives: names, units, shapes and values of the file, read when they are used, and exact numbers."""
 import importlib.util
+import math
 import os
 import subprocess
 import sys
@@ -176,6 +177,11 @@ class Others(unittest.TestCase):
             self.assertLess(high[0] - low[0], Fraction(1, 10 ** 300))
             text = str(result.exact.series.energy_low[0])
             self.assertEqual(Fraction(text), low[0])
+            low, high = result.enclosure("front_left")
+            self.assertTrue(math.isnan(low[0]) and math.isnan(high[0]))  # before the first collision
+            self.assertLess(low[-1], high[-1])
+            with self.assertRaisesRegex(cradle.Error, "no bounds of x in its series: it has those of .*energy"):
+                result.enclosure("x")
 
     @unittest.skipUnless(importlib.util.find_spec("mpmath"), "no mpmath (Debian: python3-mpmath)")
     def test_mpmath_keeps_all_digits(self):

@@ -96,4 +96,22 @@ TEST(ExpectedCollisions, SayWithWhatACollapseEnds) {
   EXPECT_TRUE(has(expected_warning(parse_scene(rows, "rows.toml", {"law.cutoff=1e-6"})), "to end sooner"));
 }
 
+// N_c = 4 for 0.1716: two gaps collapse to a proved end, and double ends where numbers leave its range.
+TEST(ExpectedCollisions, AreWithoutEndWhereFewParticlesCollapseInTypesWithoutRange) {
+  const auto warning = [](const std::string& restitution, const char* run, const std::string& particles) {
+    return expected_warning(
+        scene_of("law = { type = 'inelastic', restitution = " + restitution + " }\nrun = { " + run +
+                 "until = 50, collapse = 'stop' }\ninitial = { type = 'ring', particles = " + particles + " }\n"));
+  };
+  const char* const endless = "has no end: give run.stop_gap";
+  for (const char* wide : {"precision = 'mpfr', ", "precision = 'cpp_bin_float', "}) {
+    EXPECT_TRUE(has(warning("0.17", wide, "4"), endless));
+    EXPECT_FALSE(has(warning("0.18", wide, "4"), endless));
+    EXPECT_FALSE(has(warning("0.05", wide, "3"), endless));
+    EXPECT_FALSE(has(warning("0.17", wide, "17"), endless));
+  }
+  EXPECT_FALSE(has(warning("0.17", "", "4"), endless));
+  EXPECT_FALSE(has(warning("0.17", "precision = 'mpfr', stop_gap = 1e-99, ", "4"), endless));
+}
+
 }  // namespace cradle::tools::cost_test

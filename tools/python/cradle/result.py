@@ -1,9 +1,11 @@
 """Results: `cradle.open(path)` and what it gives."""
 from __future__ import annotations
 
+import math
 import os
 import tempfile
 from collections.abc import Iterator
+from fractions import Fraction
 from functools import cached_property
 from typing import Any
 
@@ -211,13 +213,18 @@ class Result:
     def enclosure(self, name: str) -> tuple[list, list]:
         """Proved lower and upper bounds of a quantity of the series, as two lists of Fractions.
 
-        name: "energy", "front_left", "front_right", "wall_left_energy", "wall_left_lost" and so on. Raises Error if the
-            file has no proof of it.
+        name: "energy", "front_left", "front_right", "wall_left_energy", "wall_left_lost" and so on; NaN where there is
+            none, as of a front before the first collision. Raises Error if the file has no proof of it.
         """
         exact = self.exact.get("series", {})
         if f"{name}_low" not in exact:
-            raise Error(f"{self.path}: no bounds of {name} in it: `cradle certify` writes such files", BAD_FILE)
-        return exact[f"{name}_low"].fractions(), exact[f"{name}_high"].fractions()
+            proved = ", ".join(column[:-4] for column in exact if column.endswith("_low"))
+            raise Error(f"{self.path}: no bounds of {name} in its series: " + (
+                f"it has those of {proved}; bounds of places and velocities are in exact/snapshots" if proved else
+                "`cradle certify` writes such files"), BAD_FILE)
+        low, high = ([math.nan if v == "nan" else Fraction(v) for v in exact[f"{name}_{end}"].values.tolist()]
+                     for end in ("low", "high"))
+        return low, high
 
     def __repr__(self) -> str:
         parts = [("series", len(self.series)), ("snapshots", len(self.snapshots)), ("profiles", len(self.profiles)),

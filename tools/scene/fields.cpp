@@ -329,9 +329,11 @@ const std::vector<Field> fields_after_walls{
     {"run.merge_speed", run_of<&Run::merge_speed>, "l/t", "required", "(0, inf)", &merge,
      "particles that close slower than this stick"},
     {"run.stop_gap", run_of<&Run::stop_gap>, "l", "", "(0, inf)", &stop,
-     "the run ends when a gap, or the height of a rebound from a floor, is below this, proved to collapse or not; "
-     "without it, where a collapse is proved, followed until its time is settled, and of more than 16 particles in "
-     "gaps, without gravity or shaken walls, where one is below 2^-100 of a gap beside it at the start, without proof"},
+     "the run ends when a gap, or the height of a rebound from a floor, is below this, proved to collapse or not. "
+     "Without it the run ends when a collapse is proved and its time is settled; with more than 16 particles in gaps, "
+     "without gravity or shaken walls, also when a gap is below 2^-100 of one beside it at the start, without proof. "
+     "A collapse of 4 to 16 particles then ends it only when the type resolves no more, which in mpfr and "
+     "cpp_bin_float does not come in practice"},
 
     {"output.series.every", output_of<&Output::series, &Series::every>, "t", "", "(0, inf)", &always,
      "time between samples of the series, at most 1e7 of them"},

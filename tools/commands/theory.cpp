@@ -1,6 +1,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
+#include <string_view>
+#include <utility>
 
 #include "cradle/tools/commands/commands.hpp"
 #include "cradle/tools/theory/laws.hpp"
@@ -27,16 +30,17 @@ Exit theory(const TheoryArguments& options) {
   }
   fmt::print("{:<31}{:<18}{:<12}{:>12}  {}\n", "quantity", "equation", "form", "t", "value");
   // Prints curves at a few times only; --csv writes all points.
-  std::size_t shown = 0;
+  std::map<std::pair<std::string, std::string>, std::size_t> points;  // of each curve
   for (const auto& p : table) {
-    if (p.t && (p.form == "printed" || shown++ % 250 != 0)) continue;
+    if (p.t && (p.form == "printed" || points[{p.quantity, p.form}]++ % 250 != 0)) continue;
     fmt::print("{:<31}{:<18}{:<12}{:>12}  {:.15g}\n", p.quantity, p.equation, p.form,
                p.t ? fmt::format("{:.6g}", *p.t) : "", p.value);
   }
-  fmt::print(
-      "\nforms: discrete: the exact recursion; continuous: the paper's formula, corrected where it is misprinted.\n");
-  if (std::any_of(table.begin(), table.end(), [](const Prediction& p) { return p.form == "printed"; }))
-    fmt::print("Misprints: {} As printed: form `printed`, curves in --csv.\n", misprints(scene));
+  const auto has = [&](std::string_view form) { return std::ranges::count(table, form, &Prediction::form) > 0; };
+  fmt::print("\nforms: discrete: the exact recursion; continuous: a formula, the paper's corrected where it is "
+             "misprinted{}.\n",
+             has("cushion") ? "; cushion: an estimate, of particles between walls" : "");
+  if (has("printed")) fmt::print("Misprints: {} As printed: form `printed`, curves in --csv.\n", misprints(scene));
   return Exit::done;
 }
 

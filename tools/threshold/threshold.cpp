@@ -125,14 +125,21 @@ class Search {
           run_scene(without_tables(*scene), {Progress::Show::never, nullptr, &options_.interrupt, workers(threads_)});
       if (run.end == RunEnd::interrupted) throw interrupted(options_.interrupt);
       last = fmt::format("{} in {}", end_row(run.end).text, precision_name(scene->run));
+      const auto* ties = find_attribute<std::uint64_t>(run.result.attributes, "simultaneous_collisions");
+      if (ties && *ties > 0)
+        last += fmt::format(", after {} collisions at which three particles met at one time", *ties);
       if (const auto outcome = question_.outcome(run))
         return {value.text, *outcome, run.collisions, run.merges, precision_name(scene->run)};
     }
-    throw Error(
-        {"", 0, "--vary"}, "a run without an outcome", fmt::format("{} = {}: {}", question_.key(), value.text, last),
-        "give fewer --digits or a range that ends before, a type of more digits (run.precision, run.digits), or "
-        "compare another outcome (--outcome gap with a run.stop_gap, say)",
-        Exit::lost);
+    if (runs_.size() < 2) ::unlink(part_.c_str());  // no search has begun that another command could continue
+    throw Error({"", 0, "--vary"}, "a run without an outcome",
+                fmt::format("{} = {}: {}", question_.key(), value.text, last),
+                fmt::format("give {}, a type of more digits (run.precision, run.digits), or compare another outcome "
+                            "(--outcome gap with a run.stop_gap, say)",
+                            value == question_.low()    ? "a range that begins above it"
+                            : value == question_.high() ? "a range that ends below it"
+                                                        : "fewer --digits"),
+                Exit::lost);
   }
 
   void draw() {

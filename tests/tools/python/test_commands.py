@@ -33,6 +33,14 @@ class Runs(small.Case):
                     sim.advance()
                     self.assertEqual(sim.energy, energy[-1])
 
+    def test_a_scene_without_a_file_finds_its_particles_in_the_working_folder(self):
+        small.written("particles.csv", b"x,v\n0,1\n1,0\n")
+        law, listed = "law = { type = 'inelastic', restitution = 1 }\nrun.until = 2\n", "file = 'particles.csv'"
+        for scene in (parse_toml(law + "initial = { type = 'list', " + listed + " }"),
+                      law + "[initial]\ntype = 'list'\n" + listed + "\n"):
+            with cradle.run(scene, output="listed.h5", force=True) as result:
+                self.assertEqual(result.series.collisions[-1], 1)
+
     def test_dicts_become_the_scene_that_they_came_from(self):
         scene = {"title": 'a "scene"\t\x7f', "law": {"type": "wet", "loss": 1e-4},
                  "run": {"until": 10, "events": True}, "output": {"snapshots": [1, 2.5], "series": {"points": 5}}}

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import re
 import tempfile
 import warnings
 from builtins import open as builtins_open  # hidden by ours
@@ -23,7 +24,7 @@ def run(scene: Scene, set: Settings = None, **common) -> Result:
     """Runs a scene and returns the result, also if it ended at inelastic collapse (`result.status` is then 3).
 
     scene: a scene file, the name of a bundled scene, nested dicts as result.scene has them, or the text of a scene
-        (with line breaks), as result.scene_text.
+        (with line breaks), as result.scene_text. In the last two initial.file is relative to the working folder.
     set: keys and values that replace those of the scene, `{"law.restitution": 0.9, "run.until": 500}`; the same as
         nested dicts, `{"law": {"restitution": 0.9}}`, which leave the other keys of a table; None unsets a key.
     Common to all commands, as keywords:
@@ -176,8 +177,13 @@ def scene_file(scene) -> Iterator[tuple[str, str]]:
     with tempfile.TemporaryDirectory(prefix="cradle-") as folder:
         path = os.path.join(folder, name + ".toml")
         with builtins_open(path, "w", encoding="utf-8") as file:
-            file.write(scene)
+            file.write(re.sub(r"""(\bfile *= *)(["'])(.+?)\2""", from_here, scene))
         yield path, name
+
+
+def from_here(assignment: re.Match) -> str:
+    """initial.file of a scene that has no file to which it could be relative: it is relative to the working folder."""
+    return assignment[1] + value_text(os.path.abspath(assignment[3]))
 
 
 def source_of(scene) -> tuple[str, str]:

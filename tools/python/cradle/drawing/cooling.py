@@ -60,17 +60,22 @@ def draw_cooling(result, theory, panels):
     if applies:
         axes[0].plot(time, law, "k--", label=r"sticky gas, $0.2214\,s^2\tau^{-2/3}$")
         draw_ratio(axes[1], time, energy / law)
-    known = [name for name in dict.fromkeys(row["quantity"] for row in theory.rows) if name.startswith("energy")]
-    for quantity, colour in zip((name for name in known if "sticky" not in name), (ORANGE, GREEN, RED)):
-        t, value = theory.curve(quantity)
-        shown = (t >= time[0]) & (value / particles > 0.3 * energy.min())
-        axes[0].plot(t[shown], value[shown] / particles, ":", color=colour, lw=1.6, label=theory.equation(quantity))
+    draw_laws(axes[0], theory, time, energy, particles)
     axes[0].legend(loc="lower left")
     if merging:
         axes[-1].loglog(time, 1 - series["merges"][later] / particles, color=BLUE, lw=1.6, label="simulation")
         if applies:
             axes[-1].plot(time, CLUSTERS / ENERGY * law / speed ** 2, "k--", label=r"sticky gas, $1.328\,\tau^{-2/3}$")
         axes[-1].legend(loc="lower left")
+
+
+def draw_laws(ax, theory, time, energy, particles=1):
+    """The predicted energies, but that of the sticky gas, where they are not far below the measured ones."""
+    known = [name for name in dict.fromkeys(row["quantity"] for row in theory.rows) if name.startswith("energy")]
+    for quantity, colour in zip((name for name in known if "sticky" not in name), (ORANGE, GREEN, RED)):
+        t, value = theory.curve(quantity)
+        shown = (t >= time[0]) & (t <= time[-1]) & (value / particles > 0.3 * energy.min())
+        ax.plot(t[shown], value[shown] / particles, ":", color=colour, lw=1.6, label=theory.equation(quantity))
 
 
 def draw_ratio(ax, time, ratio):

@@ -3,7 +3,7 @@ extremes (light band); profiles; and the times of inelastic collapse if replicas
 import numpy as np
 
 from ..result import fronts
-from .cooling import cooled, cools, ring_of
+from .cooling import cooled, cools, draw_laws, ring_of
 from .shock import draw_slope
 from .style import BLUE, GREY, ORANGE, beside, note, shaded, thinned
 
@@ -45,7 +45,7 @@ def draw_series(result, theory, units, panels):
     left = min((int(counts[-1]) for name, _ in shown if (counts := result.series[name].get("count")) is not None),
                default=replicas)
     note(axes[0], (f"{replicas} replicas; " if replicas else "") + (f"{left} at the end; " if left < replicas else "")
-         + "bands: standard error, extremes" + ("; orange: spread" if spreads else ""))
+         + "line, dark band: mean, standard error; light band: extremes" + ("; orange: spread" if spreads else ""))
     axes[-1].set_xlim(time[0], time[-1])
     for ax, (name, _) in zip(axes, shown):
         band(ax, time, result.series[name], scale.get(name, 1), BLUE, lw=1.2)
@@ -72,18 +72,19 @@ def draw_series(result, theory, units, panels):
             ax.plot(t[inside] / units.t, value[inside] / scale[name], "k--", lw=1,
                     label=label or theory.equation(quantity))
     if cools(result):
-        show_cooling(axes, result, time)
+        show_cooling(axes, result, theory, time)
     for lines in (ax.get_lines() for ax in axes):
         if len(lines) > 1:  # a prediction beside the mean
             lines[0].set_label("mean")
 
 
-def show_cooling(axes, result, time):
-    """A logarithmic time axis from the first collisions, with the law of the sticky gas."""
+def show_cooling(axes, result, theory, time):
+    """A logarithmic time axis from the first collisions, with the law of the sticky gas and other predictions."""
     later, _, _, law = cooled(result)
     law = law * ring_of(result)[0]
     if np.isfinite(law).any():
         axes[0].plot(time[later], law, "k--", lw=1, label="sticky gas")
+    draw_laws(axes[0], theory, time[later], result.series["energy"]["mean"][later])
     axes[0].set_yscale("log")
     axes[-1].set(xscale="log", xlim=(time[later][0], time[-1]))
 

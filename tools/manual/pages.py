@@ -88,6 +88,17 @@ def on_files(files, config):
     return Files([*files, *found.values()])
 
 
+def headings_of_keys(markdown):
+    """What the program prints of its keys, with a heading for each table and key, which links and the search find."""
+    page, _, keys = markdown.partition("<!-- output of: cradle scenes --keys -->\n```text\n")
+    table = ""
+    for key, kind, meaning in re.findall(r"^(\S+)  \((.*)\)\n    (.*)", keys, re.M):
+        first = key.split(".")[0]
+        page += f"\n## {first}\n" * (first != table and first != key) + f"\n### {key}\n\n`{kind}`: {meaning}\n"
+        table = first
+    return page
+
+
 def on_page_markdown(markdown, page, **_):
     """What GitHub reads and Python-Markdown does not: links to folders, a list without an empty line before it, and
     what belongs to an item of a list and is indented by less than four."""
@@ -100,6 +111,8 @@ def on_page_markdown(markdown, page, **_):
             return match[0]
         return f"[{words}]({posixpath.join(link, 'README.md')})" if f"{folder}/README.md" in pages() else words
 
+    if here == "tools/manual/keys.md":
+        markdown = headings_of_keys(markdown)
     lines, before, within_list = [], "", False
     for line, text in outside_code(markdown):
         if text:
@@ -117,13 +130,15 @@ def on_page_markdown(markdown, page, **_):
 
 
 def on_post_build(config, **_):
-    """The words in the titles of *How do I* are tags as well, which the search ranks first. Its index once more, as a
-    script, for pages that are opened from a disk."""
+    """The words in the titles of *How do I* are tags as well, which the search ranks first; what is not of the manual
+    comes last. The index once more, as a script, for pages that are opened from a disk."""
     folder = Path(config["site_dir"]) / "search"
     index = json.loads((folder / "search_index.json").read_text(encoding="utf-8"))
     for page in index["docs"]:
         if page["location"].startswith("how-to-"):
             page["tags"] = page["title"].split()
+        elif "/" in page["location"] or page["location"].startswith(("changes", "contributing")):
+            page["boost"] = 0.1
     text = json.dumps(index)
     (folder / "search_index.json").write_text(text, encoding="utf-8")
     # Version 9 of the theme takes it from __index, earlier ones from __search.
@@ -132,9 +147,7 @@ def on_post_build(config, **_):
 
 
 def on_page_content(html, page, **_):
-    """Wraps long lines of the list of keys; gives each argument of the Python package a line: `name: what it is`."""
-    if page.file.src_uri == "tools/manual/keys.md":
-        return html.replace("<code>", '<code class="wrapped">')
+    """Gives each argument of the Python package a line: `name: what it is`."""
     if 'class="doc doc-contents' not in html:
         return html
     return re.sub(r"(<p>|\n)((?:\w+, )*\w+): ", lambda found: (found[1] if found[1] == "<p>" else "<br>\n")

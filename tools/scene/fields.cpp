@@ -221,7 +221,8 @@ const std::vector<Field> fields_before_particles{
      "how the cut-off sets in: the restitution at a closing speed w is r + (1 - r) exp(-(w/cutoff)^this); without it, "
      "at once"},
     {"law.loss", law_of<&scene::Law::loss>, "m l^2/t^2", "required", "[0, inf)", &wet,
-     "energy E_loss that it takes to rupture a liquid bridge; pairs with less merge; 0: all collisions are elastic"},
+     "energy E_loss that it takes to rupture a liquid bridge; pairs whose relative motion has less (m w^2/4 for two of "
+     "mass m that close at w) merge; 0: all collisions are elastic"},
 
     {"initial.type", initial_of<&Initial::type>, "", "required", state_names, &always,
      "which particles there are at the start"},
@@ -280,7 +281,7 @@ const std::vector<Field> fields_before_walls{
      "variance of the velocities, one for all masses: of equal masses the temperature is mass times variance, and a "
      "mixture starts out of equilibrium"},
     {"initial.file", initial_of<&Initial::file>, "", "", "", &list,
-     "CSV file of the particles, relative to the scene: a line x,v, x,v,m or gap,v (tools/manual/scenes.md), then "
+     "CSV file of the particles, relative to the scene: a line x,v, x,v,m or gap,v (manual: Scene files), then "
      "decimals; or a result, the last snapshot of which is taken if it has all particles; results hold the particles "
      "themselves"},
     {"initial.x", initial_of<&Initial::x>, "l", "", any, &list, "positions, increasing; instead of a file"},

@@ -130,15 +130,13 @@ def on_page_markdown(markdown, page, **_):
 
 
 def on_post_build(config, **_):
-    """The words in the titles of *How do I* are tags as well, which the search ranks first; what is not of the manual
-    comes last. The index once more, as a script, for pages that are opened from a disk."""
+    """The words in the titles of *How do I* are tags as well, which the search ranks first. Its index once more, as a
+    script, for pages that are opened from a disk."""
     folder = Path(config["site_dir"]) / "search"
     index = json.loads((folder / "search_index.json").read_text(encoding="utf-8"))
     for page in index["docs"]:
         if page["location"].startswith("how-to-"):
             page["tags"] = page["title"].split()
-        elif "/" in page["location"] or page["location"].startswith(("changes", "contributing")):
-            page["boost"] = 0.1
     text = json.dumps(index)
     (folder / "search_index.json").write_text(text, encoding="utf-8")
     # Version 9 of the theme takes it from __index, earlier ones from __search.

@@ -70,9 +70,10 @@ std::string collapse_report(const ReportedCollapse& r, RunEnd end, std::uint64_t
       : end == RunEnd::small_gap
           ? std::string("a gap fell below run.stop_gap: the run stops there as requested; that this is an inelastic "
                         "collapse is not proved, and no time of it is known\n")
-          : std::string("many particles collapse: a gap fell below 2^-100 of what the gap beside it was at the start, "
-                        "where a run of more than 16 particles stops without run.stop_gap; that this is an inelastic "
-                        "collapse is not proved, and no time of it is known\n");
+          : std::string(
+                "many particles collapse: a gap fell below 2^-100 of what the gap beside it was at the start. A "
+                "run of more than 16 particles without run.stop_gap ends there; that this is an inelastic "
+                "collapse is not proved, and no time of it is known\n");
   text +=
       fmt::format("  last collision t = {}, number {}, {}\n", r.last_collision.text(), collisions, place(r.particle));
   text += fmt::format("  smallest gap   {} beside it\n", brief(r.gap));

@@ -166,10 +166,10 @@ std::string end_line(const Scene& scene) {
            "\"merge\" with a run.merge_speed and without law.cutoff, or a larger law.cutoff, takes fewer collisions "
            "past it\n";
   const std::string unproved =
-      scene.run.stop_gap     ? fmt::format("a gap is below run.stop_gap = {}", scene.run.stop_gap->text)
-      : ends_unproved(scene) ? "a gap is below 2^-100 of one beside it at the start"
-                             : "numbers leave their range (status 5), which may take long without run.stop_gap";
-  return fmt::format("the run ends (status 3) where a collapse is proved or, without proof, {}; to go past it: "
+      scene.run.stop_gap     ? fmt::format("a gap below run.stop_gap = {} does, too", scene.run.stop_gap->text)
+      : ends_unproved(scene) ? "without proof, a gap below 2^-100 of one beside it at the start does, too"
+                             : "another does where numbers leave their range (status 5), which may take long";
+  return fmt::format("a collapse that is proved ends the run (status 3); {}; to go past it: "
                      "law.cutoff, or run.collapse = \"merge\" with a run.merge_speed\nin the collapse more collisions "
                      "follow, how many is not known beforehand (of 200 particles some 1e7 at restitution 0.9, unless "
                      "run.stop_gap ends it sooner)\n",

@@ -1,4 +1,4 @@
-"""Headless Chromium, driven through a pipe as DevTools speaks it: loads a page, inspects it, photographs it.
+"""Headless Chromium, driven through a pipe as DevTools speaks it: loads a page, inspects it, prints it.
 
 What it logs, what it throws and what it asks any network for is in `complaints` and `requests`.
 """
@@ -121,16 +121,6 @@ class Browser:
                 raise TimeoutError(f"never came true: {condition}")
             time.sleep(0.05)
         return value
-
-    def shot(self, name, most=12000):
-        """For who wants to look: the page's upper `most` pixels as PNG, in the folder $CRADLE_SHOTS if that is set."""
-        if not os.environ.get("CRADLE_SHOTS"):
-            return
-        size = self.call("Page.getLayoutMetrics")["cssContentSize"]
-        clip = size | {"height": min(size["height"], most), "scale": 1}
-        shot = self.call("Page.captureScreenshot", captureBeyondViewport=True, clip=clip)
-        with open(os.path.join(os.environ["CRADLE_SHOTS"], f"{name}.png"), "wb") as file:
-            file.write(base64.b64decode(shot["data"]))
 
     def printed(self):
         """The page as PDF."""

@@ -45,7 +45,6 @@ class Reader(unittest.TestCase):
                                                 + "'), picture => picture.getBoundingClientRect().height)")
                 self.assertEqual(len(heights), len(cradle.plot.names(make())))
                 self.assertGreater(min(heights), width / 6, make.__name__)
-                self.browser.shot(f"{make.__name__}-{scheme}")
 
     def test_tables_sort_up_and_down(self):
         self.load(small.sweep)

@@ -16,7 +16,6 @@ import re
 import subprocess
 import sys
 import tempfile
-import time
 import unittest
 from collections import namedtuple
 
@@ -27,7 +26,6 @@ import small
 HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.join(HERE, "..", "..", "..")
 MOST_NOT_RUN = 12  # of some hundred blocks
-SHOWN = os.environ.get("CRADLE_MANUAL_SHOWN")  # set: shows what each block prints, and how long it takes
 
 BLOCK = re.compile(r"(?:^<!-- (?P<mark>not run|status): (?P<said>.+?) -->\n)?"
                    r"^```(?P<language>\w+)(?: title=\"(?P<title>[^\"]+)\")?\n(?P<text>.*?)^```$", re.M | re.S)
@@ -93,15 +91,11 @@ class Manual(unittest.TestCase):
                 continue
             if "cradle.Simulation" in block.text and small.live():
                 continue
-            text = block.text
             if not importlib.util.find_spec("pandas"):
-                block = block._replace(text=re.sub(".*to_pandas.*\n", "", text))
-            began = time.monotonic()
-            with self.subTest(text):
+                block = block._replace(text=re.sub(".*to_pandas.*\n", "", block.text))
+            with self.subTest(block.text):
                 output = self.commands(block) if block.language == "sh" else self.python(block)
             end = block.end
-            if SHOWN:
-                print(f"\n== {time.monotonic() - began:.1f} s\n{text}--\n{output}", file=sys.stderr)
 
     def of_readme(self, language):
         found = [block for block in blocks(os.path.join(ROOT, "README.md"))[0] if block.language == language]

@@ -236,7 +236,6 @@ class InBrowser(unittest.TestCase):
                 self.assertEqual(view["X"], float(depth))
                 self.assertTrue(view["exact"])
                 self.assert_exact(view, 1 if depth == "1e-290" else 3)
-                self.browser.shot(f"microscope-{depth}")
 
     def test_what_doubles_do_not_hold_is_left_out_and_reported(self):
         """A collapse to gaps of 1e-700, whose last intervals and speeds are nothing in doubles."""
@@ -539,7 +538,6 @@ class InBrowser(unittest.TestCase):
             "initial.particles": 400, "run.until": 300, "output.snapshots": [100, 200, 300],
             "output.profiles.times": [10], "output.events": False})
         self.assertEqual(data["kind"], "snapshots")
-        self.browser.shot("microscope-snapshots")
         shot = result.file["snapshots/0000"]
         found = self.browser.run("(w => [[...w.x0], [...w.v0]])(cradleMicroscopeTest.world())")
         self.assertLess(np.max(np.abs(np.array(found) - [shot["x"][:], shot["v"][:]])), 1e-6)
@@ -563,4 +561,3 @@ class InBrowser(unittest.TestCase):
             span = 0.06 * view["T"]
             self.m(f"zoomTo({{event: {event}, depth: {depth}, time: {span}}})")
             self.assertEqual(self.view()["exact"], depth < 1e-6)  # where positions serve, they do
-            self.browser.shot(f"microscope-core-{depth:.0e}")

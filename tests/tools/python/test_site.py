@@ -101,7 +101,6 @@ class Site(unittest.TestCase):
                     reader.load(self.folder / "index.html")
                     found = reader.until(SEARCH % word, 60)
                     self.assertIn(page, found[0], word)
-                    reader.shot(f"search-{word}-{width}-{scheme}", 900)
             self.assertEqual(reader.complaints, [])
             self.assertEqual(reader.outside(), [])
 
@@ -114,5 +113,4 @@ class Site(unittest.TestCase):
                     reader.resize(width)
                     with self.subTest(page=name, width=width):
                         self.assertLessEqual(reader.evaluate(WIDTH), width)
-                    reader.shot(f"{name.replace('/', '-')}-{width}", 2000)
             self.assertEqual(reader.complaints, [])

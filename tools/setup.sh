@@ -34,7 +34,7 @@ option  | Highway               | header hwy/highway.h         | libhwy-dev
 option  | MPI compiler          | command mpicc                | libopenmpi-dev
 option  | MPI launcher          | command mpirun               | openmpi-bin
 option  | pybind11              | header pybind11/pybind11.h   | pybind11-dev
-option  | Python headers        | python-header                | python3-dev
+option  | Python headers        | python_header                | python3-dev
 look    | Chromium              | command chromium             | chromium
 look    | pandas                | plotting pandas              | python3-pandas
 look    | xarray                | plotting xarray              | python3-xarray
@@ -46,7 +46,7 @@ look    | pip                   | python pip                   | python3-pip
 look    | setuptools            | python setuptools            | python3-setuptools
 look    | wheel                 | python wheel                 | python3-wheel
 look    | venv                  | python ensurepip             | python3-venv
-look    | MkDocs Material       | mkdocs-theme material        | mkdocs-material
+look    | MkDocs Material       | mkdocs_theme material        | mkdocs-material
 look    | mkdocstrings          | python mkdocstrings_handlers.python | mkdocstrings-python-handlers
 TABLE
 }
@@ -97,10 +97,12 @@ first_python() {
 }
 
 # plotting_python CODE: whether the interpreter for plotting, which is the first that has what it needs, runs it.
-plotting_python() {
-  local python
-  first_python "import h5py, matplotlib" && "$python" -c "$1" >/dev/null 2>&1
-}
+plotting_python() { first_python "import h5py, matplotlib" && "$python" -c "$1" >/dev/null 2>&1; }
+
+has_command() { command -v "$1" >/dev/null; }
+has_generator() { has_command ninja || has_command make; }
+has_python() { first_python "import $1"; }
+has_plotting() { plotting_python "import $1"; }
 
 # For the module for live simulations.
 has_python_header() {
@@ -110,23 +112,14 @@ sys.exit(not os.path.isfile(os.path.join(sysconfig.get_path('include'), 'Python.
 
 # The theme of the manual's site; MkDocs finds it by its name.
 has_mkdocs_theme() {
-  local python
-  command -v mkdocs >/dev/null && first_python "import sys; from mkdocs.utils import get_theme_names
+  has_command mkdocs && first_python "import sys; from mkdocs.utils import get_theme_names
 sys.exit('$1' not in get_theme_names())"
 }
 
+# has PROBE [ARGUMENT]: of the table.
 has() {
-  case $1 in
-    compiler) has_compiler ;;
-    cmake) has_cmake "$2" ;;
-    generator) command -v ninja >/dev/null || command -v make >/dev/null ;;
-    header) has_header "$2" ;;
-    command) command -v "$2" >/dev/null ;;
-    python) local python && first_python "import $2" ;;
-    mkdocs-theme) has_mkdocs_theme "$2" ;;
-    plotting) plotting_python "import $2" ;;
-    python-header) has_python_header ;;
-  esac
+  local python
+  "has_$1" "${@:2}"
 }
 
 # Fills the arrays missing and debian with what the program (or also the tests) needs, and optional with what it could

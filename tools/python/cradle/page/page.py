@@ -26,6 +26,7 @@ from .tables import tables
 # The browser may load nothing that is not in the page.
 POLICY = ("default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data: blob:; "
           "connect-src data: blob:; worker-src blob:")
+SCHEMES = ("light", "dark")  # in which every picture is drawn
 LARGEST = 1_500_000  # bytes of SVG; beyond it pixels are smaller, and browsers faster with them
 LONGEST_SCENE = 100_000  # characters; listed particles may be many
 
@@ -86,7 +87,7 @@ def lead(result: Result) -> str:
 def picture(draw, caption: str) -> str:
     """A picture of cradle.plot.drawings, light and dark: the style sheet shows one. Same picture, same text."""
     return "".join(f'<img class="{name}" alt="{html.escape(caption)}" src="{data_of(draw, name == "dark")}">'
-                   for name in ("light", "dark"))
+                   for name in SCHEMES)
 
 
 def data_of(draw, dark: bool) -> str:

@@ -19,14 +19,12 @@ class Pictures(small.Case):
         plt.close("all")
 
     def test_are_those_of_the_program_to_the_byte(self):
-        for make in small.ALL:
-            self.assertLessEqual(set(cradle.plot.names(make())), set(cradle.plot.PICTURES))
-            for extension in (".png", ".svg") if make is small.shock else (".svg",):
-                made = cradle.plot.save(make(), "ours" + extension)
-                printed = program.call(["plot", make(), "-o", "theirs" + extension, "--force"]).stdout.split()
-                self.assertEqual([name.replace("ours", "theirs") for name in made], printed)
-                for ours, theirs in zip(made, printed):
-                    self.assertTrue(filecmp.cmp(ours, theirs, shallow=False), ours)
+        for extension in (".png", ".svg"):  # test_report compares those of all kinds of results
+            made = cradle.plot.save(small.shock(), "ours" + extension)
+            printed = program.call(["plot", small.shock(), "-o", "theirs" + extension]).stdout.split()
+            self.assertEqual([name.replace("ours", "theirs") for name in made], printed)
+            for ours, theirs in zip(made, printed):
+                self.assertTrue(filecmp.cmp(ours, theirs, shallow=False), ours)
 
     def test_the_module_is_the_main_picture_and_completes_to_pictures(self):
         figure = cradle.plot(small.shock())

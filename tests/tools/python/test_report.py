@@ -6,14 +6,21 @@ import shlex
 import subprocess
 import types
 import unittest
+from unittest import mock
 
 import cradle
-import cradle.drawing.theory
+import cradle.drawing.pictures
 import small
 from cradle import program
 from cradle.errors import COLLAPSE, DIFFERS, DONE
 from cradle.page.elements import enclosed, measured, number
 from small import read
+
+
+def without_pictures(result):
+    """The text of a report without its pictures, which take most of the time."""
+    with mock.patch("cradle.page.page.pictures", return_value=""):
+        return read(cradle.report(result))
 
 
 class Reports(small.Case):
@@ -38,7 +45,7 @@ class Reports(small.Case):
                      output="failed.h5", set={
                          "initial.particles": 60, "initial.perturbation": 0.15, "run.until": 200,
                          "output.snapshots": [], "output.series.points": 3, "output.profiles.times": []})
-        page = html.unescape(read(cradle.report("failed.h5")))
+        page = html.unescape(without_pictures("failed.h5"))
         warned = page[page.index('<ul class="warnings">'):page.index("</ul>")]
         self.assertIn("order of collisions lost", warned)
         command = re.search(r"alone: <code[^>]*>([^<]*)</code>", warned)[1]
@@ -95,7 +102,7 @@ class Reports(small.Case):
                  [])):
             common = {"law": {"type": "inelastic", "restitution": 0.9}, "run": {"until": 1, "stop_gap": 1e-9}}
             with self.subTest(name), cradle.run(common | scene, output=name + ".h5") as result:
-                page = read(cradle.report(result))
+                page = without_pictures(result)
                 begin = html.unescape(re.search("<p class=intro>(.*)</p>", page)[1]).replace("\xa0", " ")
                 for words in said:
                     self.assertIn(words, begin)
@@ -131,7 +138,7 @@ class Reports(small.Case):
                 {"law.cutoff": 0, "run.collapse": "merge", "run.merge_speed": 0.1}],
                 set={"initial.particles": 20, "run.until": 5, "output.snapshots": [], "output.profiles.times": []}
                           ) as result:
-            table = read(cradle.report(result))
+            table = without_pictures(result)
             labels = [cradle.drawing.sweep.label_of(point) for point in result.points]
             named = cradle.drawing.style.distinct(labels, result.points)
         table = table[table.index('class="sortable"'):]
@@ -177,7 +184,7 @@ class Reports(small.Case):
         settings = {"initial.x": [-1, 0, 1.5], "title": "Newton's"}
         cradle.threshold("my scene.toml", {"law.restitution": "0.05:0.2"}, settings, digits=3, proof=False,
                          output="of it.h5").close()
-        command = re.search(r"<pre>(cradle .*)\n?</pre>", read(cradle.report("of it.h5")))[1]
+        command = re.search(r"<pre>(cradle .*)\n?</pre>", without_pictures("of it.h5"))[1]
         self.assertIn("--no-proof", command)
         self.makes_again(command, "of it.h5")
 
@@ -198,7 +205,7 @@ class Reports(small.Case):
     def test_scripts_of_scenes_stay_texts(self):
         title = "</title><script>alert(1)</script><b>"
         with cradle.run("fig5", set={"title": title}, output="bad.h5") as result:
-            text = read(cradle.report(result))
+            text = without_pictures(result)
         self.assertNotIn("<script>alert", text)
         self.assertIn("&lt;script&gt;alert(1)", text)
 

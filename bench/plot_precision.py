@@ -39,21 +39,18 @@ def read(path):
 
 
 def scatter(axes, points, unit, shown):
-    """points: (representation, type, cost, error). Draws them with the Pareto front."""
-    digits = [-np.log10(error) for *_, error in points]
-    best, front = -1.0, []
-    for (*_, cost, _), d in sorted(zip(points, digits), key=lambda p: (p[0][2], -p[1])):
-        if d > best + 0.5:
-            best = d
-            front.append((cost, d))
+    """points: {(representation, type): (cost, right digits)}. Draws them with the Pareto front."""
+    front = []
+    for cost, digits in sorted(points.values(), key=lambda point: (point[0], -point[1])):
+        if not front or digits > front[-1][1] + 0.5:
+            front.append((cost, digits))
     axes.plot(*zip(*front), color="0.55", lw=1.2, zorder=1)
-    for (representation, kind, cost, _), d in zip(points, digits):
-        axes.scatter(cost, d, marker=MARKERS[representation], color=COLOURS[kind], s=64, zorder=3,
+    for (representation, kind), point in points.items():
+        axes.scatter(*point, marker=MARKERS[representation], color=COLOURS[kind], s=64, zorder=3,
                      edgecolor="black" if representation == "gaps" else "0.35", linewidth=0.8)
     for representation, kind, dx, dy, align in shown:
-        at = [(p[2], d) for p, d in zip(points, digits) if p[:2] == (representation, kind)][0]
-        axes.annotate(kind if representation == "gaps" else f"{kind}, absolute", at, (dx, dy), ha=align, va="center",
-                      textcoords="offset points", fontsize=8.5, color="0.2")
+        axes.annotate(kind if representation == "gaps" else f"{kind}, absolute", points[representation, kind], (dx, dy),
+                      ha=align, va="center", textcoords="offset points", fontsize=8.5, color="0.2")
     axes.set_xscale("log")
     axes.set_yscale("function", functions=(lambda d: np.sqrt(np.maximum(d, 0)), lambda s: s ** 2))
     axes.set_yticks(DIGIT_TICKS, ["1" if d == 0 else f"$10^{{-{d}}}$" for d in DIGIT_TICKS])
@@ -69,15 +66,12 @@ def main(source, target):
     plt.rcParams.update({"font.size": 10, "axes.titlesize": 10.5, "figure.dpi": 100})
     figure, ((a, b), (c, d)) = plt.subplots(2, 2, figsize=(12.4, 10.6))
 
-    def points(scene, cost, quantity, time=""):
-        return [(representation, kind, cost(values), max(values[quantity, time], 1e-240))
+    def points(scene, quantity, time="", cost=lambda values: values["ns_per_collision", ""]):
+        return {(representation, kind): (cost(values), -np.log10(max(values[quantity, time], 1e-240)))
                 for (name, representation, kind), values in found.items()
-                if name == scene and (quantity, time) in values]
+                if name == scene and (quantity, time) in values}
 
-    def per_collision(values):
-        return values["ns_per_collision", ""]
-
-    scatter(a, points("three", lambda v: v["ns_per_collision", ""] * v["collisions", ""] / 1e3, "time_error"),
+    scatter(a, points("three", "time_error", cost=lambda v: v["ns_per_collision", ""] * v["collisions", ""] / 1e3),
             "microseconds for the whole run", [
                 ("gaps", "double", 2, -13, "center"), ("absolute", "double", -4, 12, "left"),
                 ("gaps", "double-double", -6, -10, "right"), ("gaps", "mpfr 50", -9, -5, "right"),
@@ -87,13 +81,13 @@ def main(source, target):
 
     end = max((time for (name, *_), values in found.items() if name == "shock"
                for quantity, time in values if quantity == "gap_error"), key=float)
-    scatter(b, points("shock", per_collision, "gap_error", end), "nanoseconds per collision", [
+    scatter(b, points("shock", "gap_error", end), "nanoseconds per collision", [
         ("gaps", "double", 2, -13, "center"), ("absolute", "double", 9, 0, "left"), *WIDE_LABELS])
     collisions = found["shock", "gaps", "double"]["collisions", ""]
     b.set_title(f"(b) median gap in the collapsed shock, N = 1000, t = {end},\n"
                 f"after {collisions / 1e6:.1f} million collisions")
 
-    scatter(c, points("reversal", per_collision, "position_error"), "nanoseconds per collision", [
+    scatter(c, points("reversal", "position_error"), "nanoseconds per collision", [
         ("gaps", "double", 2, -13, "center"), *WIDE_LABELS])
     c.set_title("(c) positions of an elastic gas, there and back")
     c.set_ylabel("error")

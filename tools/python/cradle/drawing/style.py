@@ -33,25 +33,20 @@ def name_colours(colours):
 
 
 name_colours(LIGHT)
-shown_dark = False  # whether pictures are being drawn for a dark page
 
 
 @contextlib.contextmanager
 def style(dark=False):
     """Applies the style while pictures are drawn and written; then restores the caller's settings. Pictures for dark
     pages are bright lines on the colour of the page."""
-    global shown_dark
-    before = shown_dark
     with matplotlib.rc_context():
         matplotlib.rcdefaults()
         matplotlib.rcParams.update(SETTINGS)
-        shown_dark = dark
         name_colours(DARK if dark else LIGHT)
         try:
             yield
         finally:
-            shown_dark = before
-            name_colours(DARK if before else LIGHT)
+            name_colours(LIGHT)
 
 
 @dataclass
@@ -138,14 +133,11 @@ class Panels:
                 named.update(labels)
 
 
-def shade_range():
-    """The part of the colour map that stands out: without the palest yellow, in the dark without the darkest violet."""
-    return (0.38, 1.0) if shown_dark else (0.0, 0.88)
-
-
 def shades(count):
-    """Colours from dark to light with time, readable in grey and by colour-blind eyes."""
-    return plt.get_cmap("viridis")(np.linspace(*shade_range(), max(count, 2)))[:count]
+    """Colours from dark to light with time, readable in grey and by colour-blind eyes: the part of a colour map that
+    stands out, without the palest yellow, on dark pages without the darkest violet."""
+    part = (0.38, 1.0) if matplotlib.colors.to_hex("white") == PAPER else (0.0, 0.88)
+    return plt.get_cmap("viridis")(np.linspace(*part, max(count, 2)))[:count]
 
 
 def shaded(items):
@@ -163,11 +155,6 @@ def times_of(groups, units):
 def note(ax, text):
     """Adds a line above a panel, on the right."""
     ax.set_title(text, loc="right", fontsize=8)
-
-
-def shade_map():
-    """The same as a colour map."""
-    return matplotlib.colors.ListedColormap(plt.get_cmap("viridis")(np.linspace(*shade_range(), 256)))
 
 
 def distinct(labels, points):

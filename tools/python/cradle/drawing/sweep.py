@@ -5,7 +5,7 @@ import numpy as np
 
 from . import beyond
 from .cooling import cooled, sticky_law
-from .style import BLUE, GREY, ORANGE, distinct, note, plt, shade_map, shades
+from .style import BLUE, GREY, ORANGE, distinct, note, plt, shades
 from .zone import model_width
 
 SPEED, LOSS = "initial.speed", "law.loss"
@@ -191,7 +191,7 @@ def draw_map(result, keys, panels):
     columns = min(2 if len(names) < 5 else 3, len(names))
     rows = -(-len(names) // columns)
     axes = panels(rows, columns, figsize=(3.4 * columns, 2.8 * rows), squeeze=False, letters=True)
-    x, y = keys[x_key], keys[y_key]
+    x, y, shade = keys[x_key], keys[y_key], plt.matplotlib.colors.ListedColormap(shades(256))
     for k, ax in enumerate(axes.flat):
         if k >= len(names):
             ax.set_visible(False)
@@ -199,7 +199,7 @@ def draw_map(result, keys, panels):
         values = result.sweep[names[k]].astype(float)
         known = np.isfinite(values)
         norm = plt.matplotlib.colors.LogNorm() if wide(values) else None
-        dots = ax.scatter(x[known], y[known], c=values[known], norm=norm, marker="s", s=60, cmap=shade_map())
+        dots = ax.scatter(x[known], y[known], c=values[known], norm=norm, marker="s", s=60, cmap=shade)
         ax.plot(x[~known], y[~known], "x", color=GREY)
         panels.figure.colorbar(dots, ax=ax, label=names[k].replace("_", " "))
         spread(ax.set_xscale, x, 8)

@@ -28,14 +28,7 @@ function microscopeRaster(world, view, width, height, value, range, ink, budget,
     let slot = microscopeFirst(none, end, k => slotTime[k] <= t1), before = NaN;
     for (let column = firstColumn; column <= lastColumn; ++column) {
       const t = begins + column * perColumn;
-      // Doubling the steps finds the next collision quickly even with many per column.
-      for (let jump = 1; slot < end && slotTime[slot] <= t; jump *= 2) {
-        if (slot + jump < end && slotTime[slot + jump] <= t) slot += jump;
-        else {
-          ++slot;
-          jump = 0.5;
-        }
-      }
+      while (slot < end && slotTime[slot] <= t) ++slot;
       if (t > gone) break;
       const last = slot - 1;
       const place = last < none ? world.x0[particle] + world.v0[particle] * (t - world.start)

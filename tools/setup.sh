@@ -1,10 +1,11 @@
 # shellcheck shell=bash
-# Shared by quickstart.sh and test.sh, which source it. `set_up program|tests` makes sure that everything needed to
-# build the program (and its tests) is installed: it installs what is missing with apt, as root or through sudo. If it
-# cannot, it lists the missing Debian packages and stops. If nothing is missing it needs no network, root or apt. MPI,
-# Highway and pybind11 are optional, and so are Chromium, in which tests inspect reports, qemu-user, in which they check
-# older processors, and MkDocs, which makes a site of the manual: they are installed if that needs no password, else
-# left out. `step` runs a command; if it fails, `step` stops and says what to do. Tested on bare Debian 12 and 13.
+# Shared by quickstart.sh, test.sh and tests/tools/python/run.sh, which source it. `set_up program|tests` makes sure
+# that everything needed to build the program (and its tests) is installed: it installs what is missing with apt, as
+# root or through sudo. If it cannot, it lists the missing Debian packages and stops. If nothing is missing it needs no
+# network, root or apt. MPI, Highway and pybind11 are optional, and so are Chromium, in which tests inspect reports,
+# qemu-user, in which they check older processors, and MkDocs, which makes a site of the manual: they are installed if
+# that needs no password, else left out. `step` runs a command; if it fails, `step` stops and says what to do. Tested on
+# bare Debian 12 and 13.
 
 preset=release
 build=build/$preset
@@ -154,19 +155,13 @@ list_missing_and_stop() {
   exit 1
 }
 
-# as_root COMMAND...: directly or through sudo, which requires a password only at a terminal.
-as_root() {
-  if ((EUID == 0)); then
-    env DEBIAN_FRONTEND=noninteractive "$@"
-  elif [[ -t 0 ]]; then
-    sudo env DEBIAN_FRONTEND=noninteractive "$@"
-  else
-    sudo -n env DEBIAN_FRONTEND=noninteractive "$@"
-  fi
-}
-
+# apt_get WORD...: as root or through sudo, which requires a password only at a terminal.
 apt_get() {
-  as_root apt-get -qq -o DPkg::Lock::Timeout=300 -o Acquire::Retries=3 -o Dpkg::Use-Pty=0 "$@"
+  local sudo=(sudo -n)
+  if [[ -t 0 ]]; then sudo=(sudo); fi
+  if ((EUID == 0)); then sudo=(); fi
+  "${sudo[@]}" env DEBIAN_FRONTEND=noninteractive \
+    apt-get -qq -o DPkg::Lock::Timeout=300 -o Acquire::Retries=3 -o Dpkg::Use-Pty=0 "$@"
 }
 
 # Missing optional packages never stop the build.

@@ -8,15 +8,13 @@ file=$(realpath "$2")
 here=$(dirname "$(realpath "$0")")
 export CRADLE_PROGRAM PYTHONDONTWRITEBYTECODE=1 PYTHONPATH="$here/../../../tools/python:$here" MPLBACKEND=Agg
 unset DISPLAY WAYLAND_DISPLAY
-for python in "${CRADLE_PYTHON:-}" python3 /usr/bin/python3; do
-  if [[ -n $python ]] && "$python" -c "import h5py, matplotlib" >/dev/null 2>&1; then
-    export CRADLE_PYTHON=$python  # which the program then need not look for
-    folder=$(mktemp -d)
-    trap 'rm -rf "$folder"' EXIT
-    cd "$folder"
-    "$python" -W error::ResourceWarning "$here/run.py" "$file" "${@:3}"
-    exit
-  fi
-done
-echo "skipped: no Python with h5py and matplotlib (Debian: python3-h5py python3-matplotlib; or set CRADLE_PYTHON)"
-exit 77
+source "$here/../../../tools/setup.sh"
+if ! first_python "import h5py, matplotlib"; then
+  echo "skipped: no Python with h5py and matplotlib (Debian: python3-h5py python3-matplotlib; or set CRADLE_PYTHON)"
+  exit 77
+fi
+export CRADLE_PYTHON=$python  # which the program then need not look for
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+cd "$folder"
+"$python" -W error::ResourceWarning "$here/run.py" "$file" "${@:3}"

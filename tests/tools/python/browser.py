@@ -1,8 +1,7 @@
-"""Headless Chromium, driven through a pipe as DevTools speaks it: loads a page, inspects it, prints it.
+"""Headless Chromium, driven through a pipe as DevTools speaks it: loads a page and inspects it.
 
 What it logs, what it throws and what it asks any network for is in `complaints` and `requests`.
 """
-import base64
 import json
 import os
 import select
@@ -121,7 +120,3 @@ class Browser:
                 raise TimeoutError(f"never came true: {condition}")
             time.sleep(0.05)
         return value
-
-    def printed(self):
-        """The page as PDF."""
-        return base64.b64decode(self.call("Page.printToPDF", preferCSSPageSize=True, printBackground=True)["data"])

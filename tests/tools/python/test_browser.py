@@ -1,5 +1,6 @@
 """Reports as a reader sees them, in headless Chromium: nothing thrown, nothing logged, nothing asked of any network;
 tables sort; dark is dark, and print is dark on white."""
+import base64
 import re
 import unittest
 
@@ -75,7 +76,8 @@ class Reader(unittest.TestCase):
 
     def test_prints(self):
         self.load(small.sweep, "light")
-        pdf = self.browser.printed()
+        printed = self.browser.call("Page.printToPDF", preferCSSPageSize=True, printBackground=True)
+        pdf = base64.b64decode(printed["data"])
         self.assertGreaterEqual(len(re.findall(rb"/Type /Page[\n ]|/Type/Page/", pdf)), 2, "pages")
         self.assertGreater(len(pdf), 20000)
 

@@ -63,22 +63,23 @@ def excess(result, kind="mean"):
     return (result.means["sticky_excess"] if kind == "mean" else result.series["sticky_excess"][kind]) / start
 
 
-def rate(result, name):
-    """The rate per unit of time between samples, and the times midway between them."""
-    time, counts = result.means["time"], np.asarray(result.means[name], float)
+def collision_rates(result):
+    """Times midway between samples; dissipative and elastic collisions per unit of time there."""
+    time = result.means["time"]
     apart = np.diff(time) > 0
-    return ((time[1:] + time[:-1]) / 2)[apart], np.diff(counts)[apart] / np.diff(time)[apart]
+    every, elastic = (np.diff(np.asarray(result.means[name], float))[apart] / np.diff(time)[apart]
+                      for name in ("collisions", "collisions_below_cutoff"))
+    return ((time[1:] + time[:-1]) / 2)[apart], every - elastic, elastic
 
 
 def rates(result, since, units):
     """Dissipative and elastic collisions per l/2u0: mean and standard deviation, from SETTLED after `since` until the
     rows end."""
-    time, every = rate(result, "collisions")
-    elastic = rate(result, "collisions_below_cutoff")[1]
+    time, *kinds = collision_rates(result)
     used_up = result.setting("initial", "particles", np.nan) * units.t  # the sticky gas has the last of equal rows
     late = (time > since + SETTLED * units.t) & (time < ARRIVING * used_up)
     return [(np.mean(values[late]) * units.t, np.std(values[late]) * units.t) if late.any() else (np.nan, np.nan)
-            for values in (every - elastic, elastic)]
+            for values in kinds]
 
 
 def most_frequent(result, cutoff):
@@ -121,10 +122,9 @@ def draw_run(result, units, panels):
              label="share of all mass")
     positive(axes[2], time, series["core_width"][late] / units.x, color=BLUE, label="length with half of the mass")
     positive(axes[2], time, series["core_gap"][late] / units.x, color=ORANGE, label="median gap")
-    middle, every = rate(result, "collisions")
-    elastic = rate(result, "collisions_below_cutoff")[1]
+    middle, dissipative, elastic = collision_rates(result)
     shown = middle >= onset(result)
-    for values, colour, label in ((elastic, ORANGE, "elastic"), (every - elastic, BLUE, "dissipative")):
+    for values, colour, label in ((elastic, ORANGE, "elastic"), (dissipative, BLUE, "dissipative")):
         positive(axes[3], middle[shown] / units.t, values[shown] * units.t, color=colour, label=label)
 
 

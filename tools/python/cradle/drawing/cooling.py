@@ -59,7 +59,12 @@ def draw_cooling(result, theory, panels):
     axes[0].loglog(time, energy, color=BLUE, lw=1.6, label="simulation")
     if applies:
         axes[0].plot(time, law, "k--", label=r"sticky gas, $0.2214\,s^2\tau^{-2/3}$")
-        draw_ratio(axes[1], time, energy / law)
+        axes[1].semilogx(time, energy / law, color=BLUE, lw=1.6)
+        axes[1].axhline(1, color="k", ls="--")
+        if np.nanmax(energy / law) > 10:
+            axes[1].set_yscale("log")
+        else:
+            axes[1].set_ylim(bottom=0)
     draw_laws(axes[0], theory, time, energy, particles)
     axes[0].legend(loc="lower left")
     if merging:
@@ -76,15 +81,6 @@ def draw_laws(ax, theory, time, energy, particles=1):
         t, value = theory.curve(quantity)
         shown = (t >= time[0]) & (t <= time[-1]) & (value / particles > 0.3 * energy.min())
         ax.plot(t[shown], value[shown] / particles, ":", color=colour, lw=1.6, label=theory.equation(quantity))
-
-
-def draw_ratio(ax, time, ratio):
-    ax.semilogx(time, ratio, color=BLUE, lw=1.6)
-    ax.axhline(1, color="k", ls="--")
-    if np.nanmax(ratio) > 10:
-        ax.set_yscale("log")
-    else:
-        ax.set_ylim(bottom=0)
 
 
 def draw_field(result, panels):

@@ -9,7 +9,7 @@ const MICROSCOPE_CHART = { particles: 1500, collisions: 8000, deep: 60000 };
 // The anchor's two particles: {a, b, gap, speedA, speedB, lab}: right after it, in its frame, whose velocity is lab.
 function microscopeAnchor(world, anchor) {
   const { e } = anchor;
-  let [a, b] = e < 0 ? [anchor.a, microscopeOrder(world, e).next(anchor.a)] : [world.left[e], world.right[e]];
+  let [a, b] = e < 0 ? [anchor.a, microscopeOrder(world, e).next[anchor.a]] : [world.left[e], world.right[e]];
   if (world.event[e] === MICROSCOPE.pass) [a, b] = [b, a];
   if (world.event[e] === MICROSCOPE.merge) a = b = microscopeOther(world, microscopeGone(world, e), e);
   const { gap, w } = a === b ? { gap: 0, w: 0 } : microscopeRelative(world, a, b, e);
@@ -27,7 +27,7 @@ function microscopeAround(world, anchor, reach, more) {
   for (const side of [1, -1]) {
     let last = side > 0 ? found[found.length - 1] : found[0], spare = more[side > 0 ? 1 : 0];
     for (;;) {
-      const particle = side > 0 ? order.next(last.particle) : order.previous(last.particle);
+      const particle = side > 0 ? order.next[last.particle] : order.previous[last.particle];
       if (particle < 0 || seen.has(particle) || (Math.abs(last.xi) > reach && spare-- <= 0)) break;
       const { gap, w } = side > 0 ? microscopeRelative(world, last.particle, particle, anchor.e)
                                   : microscopeRelative(world, particle, last.particle, anchor.e);
@@ -88,8 +88,8 @@ function microscopeChart(world, anchor, from, to, low, high, drift) {
       .some(([tau, xi]) => side > 0 ? xi - drift * tau < high : xi - drift * tau > low);
     const order = microscopeOrder(world, anchor.e), ring = around.length >= world.particles;
     const [lowest, highest] = [around[0].particle, around[around.length - 1].particle];
-    const left = !ring && order.previous(lowest) >= 0 && comesIn(chart.byParticle.get(lowest), -1);
-    const right = !ring && order.next(highest) >= 0 && comesIn(chart.byParticle.get(highest), 1);
+    const left = !ring && order.previous[lowest] >= 0 && comesIn(chart.byParticle.get(lowest), -1);
+    const right = !ring && order.next[highest] >= 0 && comesIn(chart.byParticle.get(highest), 1);
     if (!left && !right) return { ...chart, around };
     if (left) more[0] = 2 * more[0] + around.length;
     if (right) more[1] = 2 * more[1] + around.length;

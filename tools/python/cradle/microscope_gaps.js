@@ -67,37 +67,26 @@ function microscopeKnownFrom(world, a, b, e, step) {
 // Position and velocity of a particle in the lab, `since` after collision e, with the accuracy of positions: {x, v}.
 function microscopeState(world, particle, e, since = 0) {
   const slot = microscopeSlotAfter(world, particle, e) - 1, none = slot < world.begin[particle];
-  const last = none ? -1 : world.list[slot], v = none ? world.v0[particle] : world.velocity[slot];
-  const turned = world.ring && !none && world.right[last] === particle ? world.turn[last] * world.ring : 0;
-  const x = none ? world.x0[particle] : world.x[last] + turned;
+  const [last, x, v] = none ? [-1, world.x0[particle], world.v0[particle]]
+                            : [world.list[slot], world.slotPlace[slot], world.velocity[slot]];
   return { x: x + v * microscopeFlight(world, last, e) + v * since, v };
 }
 
 // The mass of a particle right after collision e.
 function microscopeMass(world, particle, e) {
-  let mass = world.mass0[particle];
-  if (world.keepsOrder) return mass;
-  // By its mergers until then: each divides the mass by the particle's share of that of both.
-  for (let slot = world.begin[particle]; slot < world.begin[particle + 1] && world.list[slot] <= e; ++slot) {
-    const collision = world.list[slot];
-    if (world.event[collision] !== MICROSCOPE.merge) continue;
-    mass /= (world.left[collision] === particle ? world.ofLeft : world.ofRight)[collision];
-  }
-  return mass;
+  const slot = microscopeSlotAfter(world, particle, e) - 1;
+  return slot < world.begin[particle] ? world.mass0[particle] : world.slotMass[slot];
 }
 
-// The order of the particles right after collision e: {next, previous}, functions of a particle, -1 beyond the ends. If
+// The order of the particles right after collision e: {next, previous}, of each particle, -1 beyond the ends. If
 // particles merge or pass, the links of the last order are changed to this one, and the last one is no longer valid.
 function microscopeOrder(world, e) {
-  const { particles, ring } = world;
-  const first = { next: particle => particle + 1 < particles ? particle + 1 : ring ? 0 : -1,
-                  previous: particle => particle > 0 ? particle - 1 : ring ? particles - 1 : -1 };
-  if (world.keepsOrder) return first;
-  const links = link => Int32Array.from({ length: particles }, (_, i) => link(i));
-  const order = world.order ||= { e: -1, next: links(first.next), previous: links(first.previous) };
-  while (order.e < e) microscopeRelink(world, ++order.e, order, true);
-  while (order.e > e) microscopeRelink(world, order.e--, order, false);
-  return { next: particle => order.next[particle], previous: particle => order.previous[particle] };
+  const { particles, ring, keepsOrder } = world, links = link => Int32Array.from({ length: particles }, link);
+  const order = world.order ||= { e: -1, next: links((_, i) => i + 1 < particles ? i + 1 : ring ? 0 : -1),
+                                  previous: links((_, i) => i > 0 ? i - 1 : ring ? particles - 1 : -1) };
+  while (!keepsOrder && order.e < e) microscopeRelink(world, ++order.e, order, true);
+  while (!keepsOrder && order.e > e) microscopeRelink(world, order.e--, order, false);
+  return order;
 }
 
 // Makes the links those right after collision e from those right before it, or the other way round.

@@ -28,9 +28,8 @@ function microscopePower(exponent) {
 
 // Round steps that divide a span into up to `count` parts.
 function microscopeStep(span, count) {
-  const raw = span / count, power = 10 ** Math.floor(Math.log10(raw));
-  const [one, scaled] = power > 0 ? [power, raw / power] : [raw, 1];
-  return one * (scaled <= 1 ? 1 : scaled <= 2 ? 2 : scaled <= 5 ? 5 : 10);
+  const power = 10 ** Math.floor(Math.log10(span / count)), scaled = span / count / power;
+  return power * (scaled <= 1 ? 1 : scaled <= 2 ? 2 : scaled <= 5 ? 5 : 10);
 }
 
 // The ticks of an axis: values from the middle at `centre` over `span`, with an absolute `origin` if that is resolved,
@@ -41,7 +40,7 @@ function microscopeTicks(centre, span, count, origin) {
   const plain = absolute && span >= 1e-3 && span < 1e6, ticks = [];
   for (let k = Math.ceil((base - span / 2) / step); k <= Math.floor((base + span / 2) / step); ++k) {
     const decimals = Math.max(0, -Math.floor(Math.log10(plain ? step : step / 10 ** power) + 1e-9));
-    const scaled = plain ? k * step : power > -300 ? k * step / 10 ** power : k * (step * 1e200) / 10 ** (power + 200);
+    const scaled = plain ? k * step : k * step / 10 ** power;
     const label = scaled.toFixed(Math.min(decimals, 9)).replace(/^-(0\.?0*)$/, "$1").replace("-", "−");
     ticks.push([k * step - base, label]);
   }

@@ -68,7 +68,7 @@ async function microscopeSnapshot(data, snapshot) {
 
 // Replays the collisions once: times (as unevaluated sums), positions, velocities, the effect of each collision, and
 // the collisions of each particle: particle b has list[begin[b]] .. list[begin[b + 1] - 1]; collision e has the slots
-// slotLeft[e] (left particle) and slotRight[e] there.
+// slotLeft[e] (left particle) and slotRight[e] there. Of each slot the time, and place, velocity and mass right after.
 function microscopeReplay(world) {
   const { n, particles, left, right, speed, event, interval, law, ring } = world;
   const begin = new Int32Array(particles + 1), list = new Int32Array(2 * n);
@@ -77,14 +77,13 @@ function microscopeReplay(world) {
   const fill = begin.slice(), slotLeft = new Int32Array(n), slotRight = new Int32Array(n);
   const time = new Float64Array(n), low = new Float64Array(n), x = new Float64Array(n), after = new Float64Array(n);
   const ofLeft = new Float64Array(n), ofRight = new Float64Array(n);  // shares of the two in their mass
-  const depth = new Float32Array(n), velocity = new Float64Array(2 * n);
-  const slotTime = new Float64Array(2 * n), slotPlace = new Float64Array(2 * n);  // in one place, for quick pictures
-  const lost = new Float32Array(n), turn = ring ? new Int16Array(n) : null;
+  const depth = new Float32Array(n), lost = new Float32Array(n);
+  const [slotTime, slotPlace, velocity, slotMass] = Array.from({ length: 4 }, () => new Float64Array(2 * n));
   world.mass0 ||= new Float64Array(particles).fill(1);
   const mass = world.mass0.slice(), v = world.v0.slice(), place = world.x0.slice();
   const since = new Float64Array(particles).fill(world.start), sinceLow = new Float64Array(particles);
   Object.assign(world, { begin, list, slotLeft, slotRight, time, low, x, after, ofLeft, ofRight, depth, velocity,
-                         slotTime, slotPlace, lost, turn,
+                         slotTime, slotPlace, slotMass, lost,
                          keepsOrder: law.type === "inelastic" && !event.includes(MICROSCOPE.merge) });
   let t = world.start, rest = 0;
   for (let e = 0; e < n; ++e) {
@@ -110,23 +109,20 @@ function microscopeReplay(world) {
     const flownLeft = (t - since[a]) + (rest - sinceLow[a]), flownRight = (t - since[b]) + (rest - sinceLow[b]);
     const fromLeft = place[a] + v[a] * flownLeft, fromRight = place[b] + v[b] * flownRight;
     const around = ring ? Math.round((fromRight - fromLeft) / ring) : 0;
-    if (ring) turn[e] = around;
     x[e] = (fromLeft + (fromRight - around * ring)) / 2;
     place[a] = x[e];
     place[b] = x[e] + around * ring;
-    since[a] = since[b] = t;
-    sinceLow[a] = sinceLow[b] = rest;
-    v[a] += microscopeKick(world, a, e);
-    v[b] += microscopeKick(world, b, e);
     if (event[e] === MICROSCOPE.merge) mass[a] = mass[b] = total;
     slotLeft[e] = fill[a]++;
     slotRight[e] = fill[b]++;
-    list[slotLeft[e]] = list[slotRight[e]] = e;
-    slotTime[slotLeft[e]] = slotTime[slotRight[e]] = t;
-    slotPlace[slotLeft[e]] = place[a];
-    slotPlace[slotRight[e]] = place[b];
-    velocity[slotLeft[e]] = v[a];
-    velocity[slotRight[e]] = v[b];
+    for (const [particle, slot] of [[a, slotLeft[e]], [b, slotRight[e]]]) {
+      list[slot] = e;
+      since[particle] = slotTime[slot] = t;
+      sinceLow[particle] = rest;
+      velocity[slot] = v[particle] += microscopeKick(world, particle, e);
+      slotPlace[slot] = place[particle];
+      slotMass[slot] = mass[particle];
+    }
     // The depth: the gap that has closed since one of the two had its last collision.
     const before = Math.max(slotLeft[e] > begin[a] ? list[slotLeft[e] - 1] : -1,
                             slotRight[e] > begin[b] ? list[slotRight[e] - 1] : -1);

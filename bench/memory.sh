@@ -9,21 +9,16 @@ cradle=${1:-build/release/tools/cradle}
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 
-# Runs the program and prints its largest resident size, in kB.
+# peak PARTICLES: the largest resident size of the program in such a run, in kB.
 peak() {
-  python3 - "$@" <<'PYTHON'
+  python3 - "$cradle" run fig2 --quiet --set "initial.particles=$1" --set run.until=1000 \
+    --set 'output.snapshots=[500, 1000]' --set 'output.profiles.times=[500, 1000]' -o "$scratch/$1.h5" <<'PYTHON'
 import resource, subprocess, sys
 subprocess.run(sys.argv[1:], check=True, stdout=sys.stderr)
 print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)
 PYTHON
 }
 
-run() {
-  peak "$cradle" run fig2 --quiet --set "initial.particles=$1" --set run.until=1000 \
-    --set 'output.snapshots=[500, 1000]' \
-    --set 'output.profiles.times=[500, 1000]' -o "$scratch/$1.h5"
-}
-
-small=$(run 8000)
-large=$(run 2e7)
+small=$(peak 8000)
+large=$(peak 2e7)
 echo "N = 8000: $small kB    N = 2e7: $large kB    ratio $(python3 -c "print(f'{$large / $small:.3f}')")"

@@ -186,11 +186,9 @@ function microscopeCamera(world) {
         built.late >= late && built.low <= low - shear && built.high >= high + shear &&
         (chart ? view.T > built.T / 20 : view.T > built.T / 1.5))
       return;
-    const next = { anchor: view.anchor, early: view.tau - 1.5 * view.T, late: view.tau + 1.5 * view.T, T: view.T,
-                   low: view.xi - 1.5 * view.X, high: view.xi + 1.5 * view.X, V: view.V };
-    camera.built = next;
-    camera.chart = camera.crowded() ? null :
-      microscopeChart(world, view.anchor, next.early, next.late, next.low, next.high, next.V);
+    camera.built = { anchor: view.anchor, early: view.tau - 1.5 * view.T, late: view.tau + 1.5 * view.T, T: view.T,
+                     low: view.xi - 1.5 * view.X, high: view.xi + 1.5 * view.X, V: view.V };
+    camera.chart = camera.crowded() ? null : microscopeChart(world, camera.built);
   };
 
   camera.home();

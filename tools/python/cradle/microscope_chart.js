@@ -60,18 +60,17 @@ function microscopeTimes(world, e, collisions) {
   return tau;
 }
 
-// The chart for tau in [from, to] and the particles that come within [low, high] of xi - drift tau there; null if there
+// The chart for tau in [early, late] and the particles that come within [low, high] of xi - V tau there; null if there
 // are too many particles or collisions.
 //   collisions    Int32Array, rising; tau, xi of each
 //   lines         [{particle, points: [index in collisions], speeds: [velocity after each], from: [tau, xi],
 //                 to: [tau, xi]}]
 //   around        the particles around the anchor; byParticle: their lines, by particle
-function microscopeChart(world, anchor, from, to, low, high, drift) {
+function microscopeChart(world, { anchor, early, late, low, high, V }) {
   const begins = -microscopeFlight(world, -1, anchor.e);
   const final = world.n - 1, beyond = world.end - (final < 0 ? world.start : world.time[final]);
   const ends = microscopeFlight(world, anchor.e, final) + Math.max(0, beyond);
-  from = Math.max(from, begins);
-  to = Math.min(Math.max(to, from), ends);
+  const from = Math.max(early, begins), to = Math.min(Math.max(late, from), ends);
   const deep = high - low < 1e-9 * Math.max(Math.abs(world.x0[0]), Math.abs(world.x0[world.particles - 1]));
   const most = 2 * (deep ? MICROSCOPE_CHART.deep : MICROSCOPE_CHART.collisions);
   // Also those between an anchor that is out of sight and the view: particles are followed from it.
@@ -85,7 +84,7 @@ function microscopeChart(world, anchor, from, to, low, high, drift) {
     if (!chart) return null;
     // Particles further out may enter where the outermost ones do.
     const comesIn = (line, side) => [line.from, line.to, ...line.points.map(i => [chart.tau[i], chart.xi[i]])]
-      .some(([tau, xi]) => side > 0 ? xi - drift * tau < high : xi - drift * tau > low);
+      .some(([tau, xi]) => side > 0 ? xi - V * tau < high : xi - V * tau > low);
     const order = microscopeOrder(world, anchor.e), ring = around.length >= world.particles;
     const [lowest, highest] = [around[0].particle, around[around.length - 1].particle];
     const left = !ring && order.previous[lowest] >= 0 && comesIn(chart.byParticle.get(lowest), -1);

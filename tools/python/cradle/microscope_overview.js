@@ -45,21 +45,20 @@ function microscopeRaster(world, view, width, height, value, range, ink, budget,
         lines[k * width + column] += 1;
     }
   }
+  const add = (column, row, share, logarithm) => {
+    if (row < 0 || row >= height) return;
+    count[row * width + column] += share;
+    tint[row * width + column] += share * logarithm;
+  };
   // Visible collisions, from the list sorted by time. Each is shared by two pixels, so that regular ones make no moiré.
   const first = microscopeFirstAfter(time, begins), last = microscopeFirstAfter(time, begins + view.T);
   const skip = Math.max(1, Math.ceil((last - first) / budget));
   for (let k = first; k < last; k += skip) {
     const column = Math.floor((time[k] - begins) / perColumn), y = row(x[k], time[k]), at = Math.floor(y);
-    if (column < 0 || column >= width || at < -1 || at >= height) continue;
-    const place = at * width + column, below = skip * (y - at), above = skip - below, logarithm = value[k];
-    if (at >= 0) {
-      count[place] += above;
-      tint[place] += above * logarithm;
-    }
-    if (at + 1 < height) {
-      count[place + width] += below;
-      tint[place + width] += below * logarithm;
-    }
+    if (column < 0 || column >= width) continue;
+    const below = skip * (y - at);
+    add(column, at, skip - below, value[k]);
+    add(column, at + 1, below, value[k]);
   }
   const crowd = Math.min(1, (highest - lowest) / height);
   microscopeTone(store, range, ink, step, 0.75 - 0.35 * crowd);

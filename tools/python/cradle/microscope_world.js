@@ -54,10 +54,10 @@ async function microscopeSnapshot(data, snapshot) {
     valid[particle] = Math.min(valid[particle], due);
     valid[particle + 1] = due;
   }
-  const none = () => new Float64Array(0), world = {
-    n: 0, particles, x0, v0, gap0: gap, w0: w, mass0: mass, left: new Uint32Array(0), right: new Uint32Array(0),
-    ring: 0, interval: none(), speed: none(), event: new Uint8Array(0), law: data.law,
-    first: snapshot.first, index, valid, start: snapshot.time, total: 0, digits: 9, collapse: false,
+  const none = new Float64Array(0), world = {
+    n: 0, particles, x0, v0, gap0: gap, w0: w, mass0: mass, left: none, right: none, interval: none, speed: none,
+    event: none, ring: 0, law: data.law, first: snapshot.first, index, valid, start: snapshot.time, total: 0, digits: 9,
+    collapse: false,
   };
   microscopeReplay(world);
   // The time until which nine in ten of the world lines are known.

@@ -1,4 +1,4 @@
-// Drawing: world lines and collisions of a chart, axes with labels for any depth, and the strip of all depths.
+// Drawing: world lines and collisions of a chart, and axes with labels for any depth.
 //
 // The view is {anchor, lab, tau, xi, T, X, V}: the middle of the picture at tau after the anchor's collision and xi
 // from it, its spans of time and space, the velocity V of its frame in the anchor's, and that of this in the lab.

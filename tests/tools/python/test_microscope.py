@@ -364,7 +364,7 @@ class InBrowser(unittest.TestCase):
     def test_play_flies_into_the_collapse(self):
         x, y, *_ = self.clicked()
         self.browser.key(" ", "Space")
-        self.browser.until("cradleMicroscopeTest.view().X < 1e-20")  # where positions have long ended
+        self.browser.until("cradleMicroscopeTest.view().X < 1e-30")
         self.browser.key(" ", "Space")
         self.assertFalse(self.m("state.playing"))
         still = self.view()

@@ -8,6 +8,7 @@ from .style import BLUE, GREEN, GREY, ORANGE, RED, note, power, thinned
 
 ENERGY, CLUSTERS = 0.221376226650747359, 1.32825735990448415
 FEWEST = 10   # clusters that are left, for the law of infinitely many particles to say something of these
+FEWEST_AT_START = 50  # particles: of fewer that law would hold for less than a decade of time
 STRETCH = 80  # particles of the last snapshot that are shown of the velocities
 
 
@@ -31,12 +32,13 @@ def ring_of(result):
 
 
 def sticky_law(result, time):
-    """The energy per particle; NaN before clusters form and after only FEWEST would be left."""
+    """The energy per particle; NaN before clusters form, after only FEWEST would be left, and for a few particles."""
     particles, speed, spacing = ring_of(result)
     with np.errstate(divide="ignore"):
         share = (speed * time / spacing) ** (-2 / 3)
     clusters = CLUSTERS * share
-    return np.where((clusters < 1) & (particles * clusters >= FEWEST), ENERGY * speed ** 2 * share, np.nan)
+    holds = (clusters < 1) & (particles * clusters >= FEWEST) & (particles >= FEWEST_AT_START)
+    return np.where(holds, ENERGY * speed ** 2 * share, np.nan)
 
 
 def cooled(result):

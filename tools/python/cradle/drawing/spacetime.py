@@ -3,7 +3,7 @@ particles, with the collisions marked; and Newton's cradle: the paths of the sin
 import numpy as np
 
 from .particles import few
-from .style import BLUE, GREY, ORANGE, RED, shades
+from .style import BLUE, GREY, ORANGE, RED, beside, shades
 
 MOST_SINGLE = 40  # of the cradle: more circles could not be distinguished
 
@@ -62,7 +62,7 @@ def draw_paths(ax, result, units, heaviest):
         ax.plot(*np.array(meetings).T, "o", ms=9, mfc="none", color=RED, mew=1.2, label="collision", zorder=5)
     ax.set(xlabel=units.position_label(), ylabel=units.time_label(),
            ylim=(result.snapshots[0]["time"] / units.t, result.snapshots[-1]["time"] / units.t))
-    ax.legend(loc="upper left")
+    beside(ax)
 
 
 def particle_colours(count):

@@ -2,14 +2,14 @@
 Kadanoff, Phys. Rev. Lett. 74, 1268, 1995)."""
 import numpy as np
 
-from .particles import MARKED
+from .particles import MARKED, few
 from .style import BLUE, GREY, ORANGE
 
 FEW = 12  # snapshots, for quantiles against time to mean something
 
 
 def pictures(result, _theory, _units):
-    if given_by(result.means) and len(result.snapshots) >= FEW and len(result.snapshots[0]["x"]) > 1:
+    if given_by(result.means) and len(result.snapshots) >= FEW and not few(result):
         yield "walls", draw, result
 
 

@@ -24,7 +24,7 @@ std::string place(ParticleIndex left) {
 std::optional<std::int64_t> first_digit(const std::string& text) {
   const auto decimal = canonical_decimal(text);
   const DecimalParts parts = decimal ? parts_of(*decimal) : DecimalParts();
-  return parts.digits.empty() ? std::nullopt : std::optional(parts.exponent - 1);
+  return parts.digits.empty() ? std::nullopt : std::optional(parts.exponent() - 1);
 }
 
 // A double may be 0 where the number is not.

@@ -22,14 +22,21 @@ std::size_t count_digits(std::string_view text) {
 }
 
 std::strong_ordering compare_magnitudes(const DecimalParts& a, const DecimalParts& b) {
-  if (a.exponent != b.exponent) return a.exponent <=> b.exponent;
+  if (a.exponent() != b.exponent()) return a.exponent() <=> b.exponent();
   return a.digits <=> b.digits;  // both begin with the same power of ten and have no zeros at the end
+}
+
+DecimalParts without_zeros(const DecimalParts& number) {
+  const auto& [negative, digits, power] = number;
+  const std::size_t first = digits.find_first_not_of('0'), end = digits.find_last_not_of('0') + 1;
+  if (end == 0) return {};
+  return {negative, digits.substr(first, end - first), power + static_cast<std::int64_t>(digits.size() - end)};
 }
 
 }  // namespace
 
-DecimalLiteral literal_of(std::string_view text) {
-  DecimalLiteral literal{text.starts_with('-'), {}, 0};
+DecimalParts literal_of(std::string_view text) {
+  DecimalParts literal{text.starts_with('-'), {}, 0};
   if (literal.negative) text.remove_prefix(1);
   if (const auto e = text.find_first_of("eE"); e != text.npos) {
     std::from_chars(text.data() + e + 1, text.data() + text.size(), literal.power);
@@ -43,13 +50,7 @@ DecimalLiteral literal_of(std::string_view text) {
   return literal;
 }
 
-DecimalParts parts_of(std::string_view text) {
-  auto [negative, digits, power] = literal_of(text);
-  const std::size_t first = digits.find_first_not_of('0');
-  if (first == std::string::npos) return {};
-  return {negative, digits.substr(first, digits.find_last_not_of('0') + 1 - first),
-          power + static_cast<std::int64_t>(digits.size() - first)};
-}
+DecimalParts parts_of(std::string_view text) { return without_zeros(literal_of(text)); }
 
 std::optional<std::string> canonical_decimal(std::string_view written) {
   // An underscore must be between two digits, as in TOML.
@@ -103,17 +104,13 @@ std::strong_ordering compare_decimals(std::string_view a_text, std::string_view 
   return a.negative ? compare_magnitudes(b, a) : compare_magnitudes(a, b);
 }
 
-bool is_whole(std::string_view text) {
-  const DecimalParts parts = parts_of(text);
-  return parts.exponent >= static_cast<std::int64_t>(parts.digits.size());
-}
+bool is_whole(std::string_view text) { return parts_of(text).power >= 0; }
 
 std::optional<std::uint64_t> decimal_integer(std::string_view text) {
   DecimalParts parts = parts_of(text);
   if (parts.digits.empty()) return 0;
-  if (parts.negative || parts.exponent < static_cast<std::int64_t>(parts.digits.size()) || parts.exponent > 20)
-    return {};
-  parts.digits.append(static_cast<std::size_t>(parts.exponent) - parts.digits.size(), '0');
+  if (parts.negative || parts.power < 0 || parts.exponent() > 20) return {};
+  parts.digits.append(static_cast<std::size_t>(parts.power), '0');
   std::uint64_t result = 0;
   const char* end = parts.digits.data() + parts.digits.size();
   const auto [stop, error] = std::from_chars(parts.digits.data(), end, result);
@@ -128,7 +125,7 @@ Decimal::Decimal(std::string_view literal) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error == std::errc::result_out_of_range) {
     const DecimalParts parts = parts_of(text);
-    value = parts.exponent < 0 ? 0 : std::numeric_limits<double>::infinity();
+    value = parts.exponent() < 0 ? 0 : std::numeric_limits<double>::infinity();
     if (parts.negative) value = -value;
   }
 }
@@ -137,16 +134,13 @@ Scaled scaled(std::string_view decimal) {
   const DecimalParts parts = parts_of(decimal);
   if (parts.digits.empty()) return {};
   const Whole digits(parts.digits);
-  return {parts.negative ? Whole(-digits) : digits, parts.exponent - static_cast<std::int64_t>(parts.digits.size())};
+  return {parts.negative ? Whole(-digits) : digits, parts.power};
 }
 
-std::string decimal_text(bool negative, std::string digits, std::int64_t power, WithPower with_power) {
-  digits.erase(0, digits.find_first_not_of('0'));
+std::string decimal_text(const DecimalParts& number, WithPower with_power) {
+  auto [negative, digits, power] = without_zeros(number);
   if (digits.empty()) return "0";
-  const std::size_t last = digits.find_last_not_of('0') + 1;
-  power += static_cast<std::int64_t>(digits.size() - last);
-  digits.resize(last);
-  if (with_power(power, static_cast<std::int64_t>(last))) {
+  if (with_power(power, std::ssize(digits))) {
     if (power != 0) digits += "e" + std::to_string(power);
   } else if (power >= 0) {
     digits.append(static_cast<std::size_t>(power), '0');
@@ -159,7 +153,7 @@ std::string decimal_text(bool negative, std::string digits, std::int64_t power, 
 }
 
 std::string decimal_text(Scaled number, WithPower with_power) {
-  return decimal_text(number.integer < 0, Whole(abs(number.integer)).str(), number.power, with_power);
+  return decimal_text({number.integer < 0, Whole(abs(number.integer)).str(), number.power}, with_power);
 }
 
 void DecimalColumn::push_back(std::string_view literal) {

@@ -67,7 +67,7 @@ std::optional<std::string> quotient_text(std::int64_t integer, std::int64_t powe
   if (parts > std::numeric_limits<std::int64_t>::max() / shift || !without(10, 1) || !without(5, 2) || !without(2, 5))
     return {};
   std::string text = std::to_string(integer / parts);
-  if (parts == 1) return decimal_text(false, std::move(text), power, is_very_long);
+  if (parts == 1) return decimal_text({false, std::move(text), power}, is_very_long);
   std::int64_t more = digits_of_quotient(digits, std::to_string(integer).size(), std::to_string(parts).size(), power);
   power -= more;
   for (std::int64_t rest = integer % parts; more > 0; more -= places) {
@@ -76,7 +76,7 @@ std::optional<std::string> quotient_text(std::int64_t integer, std::int64_t powe
     text.append(next, 1, static_cast<std::size_t>(std::min<std::int64_t>(more, places)));
     rest %= parts;
   }
-  return decimal_text(false, std::move(text), power, is_very_long);
+  return decimal_text({false, std::move(text), power}, is_very_long);
 }
 
 // integer 10^power/parts.
@@ -143,9 +143,9 @@ std::string difference(std::string_view a, std::string_view b) {
   if (auto exact = exact_sum(a, b, -1)) return std::move(*exact);
   // What is left of the smaller one is its sign: it decides a number that would be in the middle between two others.
   const DecimalParts of_a = parts_of(a), of_b = parts_of(b);
-  const bool first = of_a.exponent > of_b.exponent;
+  const bool first = of_a.exponent() > of_b.exponent();
   Scaled large = scaled(first ? a : b);
-  const std::int64_t power = std::min(large.power, (first ? of_a : of_b).exponent - most_digits_of_sum);
+  const std::int64_t power = std::min(large.power, (first ? of_a : of_b).exponent() - most_digits_of_sum);
   large.integer *= power_of_ten(large.power - power);
   const Whole small = (first ? of_b : of_a).negative ? -1 : 1;
   return text_of(first ? Whole(large.integer - small) : Whole(small - large.integer), power);
@@ -211,7 +211,7 @@ std::optional<std::string> sum_of_products(const DecimalColumn& a, const Decimal
   if (sums.empty()) return "0";
   const std::int64_t lowest = sums.begin()->first;
   if (sums.rbegin()->first - lowest > most_digits) return {};
-  for (const auto& [power, of_it] : sums) sum += of_it * pow(Whole(10), static_cast<unsigned>(power - lowest));
+  for (const auto& [power, of_it] : sums) sum += of_it * power_of_ten(power - lowest);
   return sum.str() + "e" + std::to_string(lowest);
 }
 

@@ -25,9 +25,8 @@ bool is_default(const Field& field, const Scene& scene) {
 std::string with_points(std::string text) {
   static const std::regex whole(R"([\[ -](\d\d+e-\d\d?)[,\]])");
   for (std::smatch found; std::regex_search(text, found, whole);) {
-    const auto [negative, digits, power] = literal_of(found.str(1));
     const auto never = [](std::int64_t, std::int64_t) { return false; };
-    text.replace(found[1].first, found[1].second, decimal_text(negative, digits, power, never));
+    text.replace(found[1].first, found[1].second, decimal_text(literal_of(found.str(1)), never));
   }
   return text;
 }

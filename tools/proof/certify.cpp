@@ -35,26 +35,27 @@ std::vector<unsigned> rising_digits() {
 #endif
 }
 
-std::optional<NotProvable> not_provable(const Scene& scene) {
-  constexpr const char* compare_precisions = "compare precisions with `cradle trust` instead";
+std::optional<Error> not_provable(const Scene& scene) {
+  const auto because = [](const char* key, const char* what, const std::string& found,
+                          const char* instead = "compare precisions with `cradle trust` instead") {
+    return Error({"", 0, key}, what, found, instead);
+  };
   if (scene.initial.type == InitialType::clusters)
-    return {{"initial.type", "no collisions to prove", "clusters, a model", "give a scene of particles"}};
+    return because("initial.type", "no collisions to prove", "clusters, a model", "give a scene of particles");
   if (!law_row(scene).provable)
-    return {{"law.type", "no proof of this law", value_text(*find_field("law.type", scene), scene).value(),
-             compare_precisions}};
+    return because("law.type", "no proof of this law", value_text(*find_field("law.type", scene), scene).value());
   if (scene.walls.shaken())
-    return {{scene.walls.left.shaken() ? "walls.left.motion" : "walls.right.motion", "shaken walls are not provable",
-             "a shaken wall", compare_precisions}};
+    return because(scene.walls.left.shaken() ? "walls.left.motion" : "walls.right.motion",
+                   "shaken walls are not provable", "a shaken wall");
   if (const auto& left = scene.walls.left.rest_speed; left || scene.walls.right.rest_speed)
-    return {{left ? "walls.left.rest_speed" : "walls.right.rest_speed", "rest on a wall is not provable",
-             (left ? left : scene.walls.right.rest_speed)->text, compare_precisions}};
+    return because(left ? "walls.left.rest_speed" : "walls.right.rest_speed", "rest on a wall is not provable",
+                   (left ? left : scene.walls.right.rest_speed)->text);
   return {};
 }
 
 void check_certifiable(const Scene& scene) {
   check_built(scene);
-  if (const auto reason = not_provable(scene))
-    throw Error({"", 0, reason->key}, reason->what, reason->found, reason->instead);
+  if (const auto reason = not_provable(scene)) throw *reason;
 }
 
 namespace {

@@ -12,6 +12,7 @@
 #include "cradle/tools/proof/certificate.hpp"
 #include "cradle/tools/result/result.hpp"
 #include "cradle/tools/run/run.hpp"
+#include "cradle/tools/support/errors.hpp"
 
 namespace cradle::tools {
 
@@ -52,14 +53,8 @@ struct Certified {
   std::string not_proved() const;
 };
 
-/// What of a scene has no proof: the key, what it is, what was found there, and what to do instead.
-struct NotProvable {
-  const char *key, *what;
-  std::string found;
-  const char* instead;
-};
 /// The first reason why a scene cannot be proved; nothing if it can.
-std::optional<NotProvable> not_provable(const Scene& scene);
+std::optional<Error> not_provable(const Scene& scene);
 /// Throws Error for a scene that cannot be proved.
 void check_certifiable(const Scene& scene);
 

@@ -13,18 +13,11 @@ namespace cradle::tools {
 
 namespace {
 
-// What an ensemble keeps of a replica: its row, and its energies in the middle of their bounds at the times of the
-// series; NaN at those that it has not, after its collapse.
-struct Kept {
-  CertifiedReplica row;
-  std::vector<double> energies;
-};
-
-Kept kept(std::uint64_t index, const Certified& run, const std::vector<double>& times) {
+CertifiedReplica kept(std::uint64_t index, const Certified& run, const std::vector<double>& times) {
   const Certificate& c = run.certificate;
-  Kept kept{{index, run.proved(), c.digits, c.collisions, {0, 0}, run.undecided()},
-            std::vector<double>(times.size(), none())};
-  if (!c.samples.empty()) kept.row.energy = c.samples.back().energy.doubles;
+  CertifiedReplica kept{
+      index, run.proved(), c.digits, c.collisions, {0, 0}, run.undecided(), std::vector<double>(times.size(), none())};
+  if (!c.samples.empty()) kept.energy = c.samples.back().energy.doubles;
   for (const CertainSample& s : c.samples) {
     const auto at = std::lower_bound(times.begin(), times.end(), s.time);
     if (!s.of_series || at == times.end() || *at != s.time) continue;
@@ -43,8 +36,8 @@ std::uint64_t proved_of(const CertifiedReplicas& run) {
 CertifiedReplicas certify_replicas(const Scene& scene, std::uint64_t count, unsigned threads,
                                    const CertifyOptions& options) {
   check_ensemble(scene);
-  CertifiedReplicas result{scene, {}, Schedule(scene).series().rounded(), {}};
-  std::vector<Kept> all(count);
+  CertifiedReplicas result{scene, std::vector<CertifiedReplica>(count), Schedule(scene).series().rounded(), {}};
+  std::vector<CertifiedReplica>& all = result.replicas;
   const auto interrupted = [&] { return options.interrupt != nullptr && options.interrupt->signal() != 0; };
   const auto prove = [&](std::uint64_t index, const std::vector<unsigned>& digits) {
     return kept(index, certify(replica_scene(scene, index), {digits, Progress::Show::never, options.interrupt}),
@@ -61,22 +54,19 @@ CertifiedReplicas certify_replicas(const Scene& scene, std::uint64_t count, unsi
           throw;
         }
       },
-      [&](std::uint64_t k, Kept replica) { all[k] = std::move(replica); },
+      [&](std::uint64_t k, CertifiedReplica replica) { all[k] = std::move(replica); },
       [&](std::uint64_t k, const std::string& message) {
-        all[k].row = {k, false, 0, 0, {0, 0}, message};
+        all[k] = {k, false, 0, 0, {0, 0}, message, {}};
       },
       interrupted);
   if (interrupted())
     throw Error({}, "interrupted", "", "run it again; nothing is kept of proofs, those that finished included",
                 status_of_signal(options.interrupt->signal()));
   const std::vector<unsigned> more(options.digits.begin() + 1, options.digits.end());
-  for (Kept& replica : all)
-    if (!replica.row.proved && replica.row.digits > 0 && !more.empty()) replica = prove(replica.row.index, more);
-
   Ensemble energies;
-  for (std::uint64_t k = 0; k < count; ++k) {
-    result.replicas.push_back(all[k].row);
-    if (all[k].row.proved) energies.add(k, std::move(all[k].energies));
+  for (CertifiedReplica& replica : all) {
+    if (!replica.proved && replica.digits > 0 && !more.empty()) replica = prove(replica.index, more);
+    if (replica.proved) energies.add(replica.index, std::move(replica.energies));
   }
   result.energy = energies.statistics();
   return result;

@@ -17,6 +17,8 @@ struct CertifiedReplica {
   std::uint64_t collisions = 0;
   Enclosure<double> energy{0, 0};  // at the end
   std::string doubt;               // where it is not proved
+  // Until the statistics have them: in the middle of their bounds at the times of the series, NaN after a collapse.
+  std::vector<double> energies;
 };
 
 struct CertifiedReplicas {

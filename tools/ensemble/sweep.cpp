@@ -1,6 +1,7 @@
 #include "cradle/tools/ensemble/sweep.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <charconv>
@@ -23,23 +24,19 @@ std::vector<std::string> split(const std::string& text, char separator) {
   return parts;
 }
 
-struct Varied {
-  std::string key;
-  std::vector<std::string> values;
-};
-
-Varied varied(const std::string& text, double most) {
+// The assignments of a key that varies.
+std::vector<std::string> varied(const std::string& text, double most) {
   const auto wrong = [&](const std::string& what) {
     return Error({"", 0, "--vary"}, what, text, "give KEY=FROM:TO:COUNT, KEY=FROM:TO:COUNT:log or KEY=VALUE,VALUE,...");
   };
   const auto equals = text.find('=');
   if (equals == text.npos || equals == 0 || equals + 1 == text.size()) throw wrong("not a key and values");
-  Varied result{text.substr(0, equals), {}};
-  const std::string values = text.substr(equals + 1);
+  const std::string assign = text.substr(0, equals + 1), values = text.substr(equals + 1);
   const auto parts = split(values, ':');
+  std::vector<std::string> all;
   if (parts.size() == 1) {
-    result.values = split(values, ',');
-    return result;
+    for (const std::string& value : split(values, ',')) all.push_back(assign + value);
+    return all;
   }
   const bool logarithmic = parts.size() == 4 && parts[3] == "log";
   if (parts.size() != 3 && !logarithmic) throw wrong("not a range of values");
@@ -52,9 +49,9 @@ Varied varied(const std::string& text, double most) {
     const double share = static_cast<double>(k) / last;
     const double value = logarithmic ? *from * std::pow(*to / *from, share) : *from + (*to - *from) * share;
     // Twelve digits, so that 0.1 + 0.2 becomes 0.3.
-    result.values.push_back(k == 0 ? parts[0] : k == last ? parts[1] : fmt::format("{:.12g}", value));
+    all.push_back(assign + (k == 0 ? parts[0] : k == last ? parts[1] : fmt::format("{:.12g}", value)));
   }
-  return result;
+  return all;
 }
 
 SweepPoint given_point(const std::string& text) {
@@ -64,16 +61,18 @@ SweepPoint given_point(const std::string& text) {
     const auto equals = assignment.find('=');
     if (equals == assignment.npos || equals == 0)
       throw Error({"", 0, "--point"}, "not keys and values", text, "give KEY=VALUE KEY=VALUE ...");
-    point.emplace_back(assignment.substr(0, equals), assignment.substr(equals + 1));
+    point.push_back(assignment);
   }
   return point;
 }
 
+std::string text_of(const SweepPoint& point) { return fmt::format("{}", fmt::join(point, " ")); }
+
 // Called before memory is allocated. A point of a grid has a value for every key.
-void check_count(const std::vector<Varied>& keys, bool cuts, double most) {
+void check_count(const std::vector<std::vector<std::string>>& keys, bool cuts, double most) {
   double points = cuts ? 0 : 1;
-  for (const Varied& one : keys) {
-    const auto values = static_cast<double>(one.values.size());
+  for (const auto& one : keys) {
+    const auto values = static_cast<double>(one.size());
     points = cuts ? points + values : points * values;
   }
   if (points > most)
@@ -123,31 +122,25 @@ std::optional<double> to_number(const std::string& text) {
   return value;
 }
 
-std::string point_label(const SweepPoint& point) {
-  std::string text;
-  for (const auto& [key, value] : point) text += (text.empty() ? "" : " ") + key + "=" + value;
-  return text;
-}
-
 std::vector<SweepPoint> sweep_points(const Sweep& sweep, double most) {
   std::vector<SweepPoint> points;
   for (const std::string& text : sweep.points) points.push_back(given_point(text));
-  std::vector<Varied> keys;
+  std::vector<std::vector<std::string>> keys;
   for (const std::string& text : sweep.vary) {
     keys.push_back(varied(text, most));
     check_count(keys, sweep.cuts, most);
   }
   if (sweep.cuts) {
-    for (const Varied& one : keys)
-      for (const std::string& value : one.values) points.push_back({{one.key, value}});
+    for (const auto& one : keys)
+      for (const std::string& assignment : one) points.push_back({assignment});
   } else if (!keys.empty()) {
     std::vector<SweepPoint> grid(1);
-    for (const Varied& one : keys) {
+    for (const auto& one : keys) {
       std::vector<SweepPoint> finer;
       for (const SweepPoint& point : grid)
-        for (const std::string& value : one.values) {
+        for (const std::string& assignment : one) {
           finer.push_back(point);
-          finer.back().emplace_back(one.key, value);
+          finer.back().push_back(assignment);
         }
       grid = std::move(finer);
     }
@@ -158,8 +151,8 @@ std::vector<SweepPoint> sweep_points(const Sweep& sweep, double most) {
                 "give --vary KEY=FROM:TO:COUNT, or --point, or a scene with a table [sweep]");
   for (const SweepPoint& point : points)
     for (auto at = point.begin(); at != point.end(); ++at)
-      if (std::any_of(point.begin(), at, [&](const auto& before) { return before.first == at->first; }))
-        throw Error({"", 0, at->first}, "twice in a point of the sweep", point_label(point), "give one of the two");
+      if (const auto key = key_of(*at); std::ranges::find(point.begin(), at, key, key_of) != at)
+        throw Error({"", 0, std::string(key)}, "twice in a point of the sweep", text_of(point), "give one of the two");
   return points;
 }
 
@@ -168,9 +161,10 @@ Group sweep_summary(const Sweep& sweep, const EnsembleStates& states) {
   Table table{points.size()};
   Group group{"sweep", {}, {}};
   for (std::size_t p = 0; p < points.size(); ++p) {
-    group.attributes.emplace_back(fmt::format("label_{:04}", p), point_label(points[p]));
-    for (const auto& [key, value] : points[p])
-      if (const auto number = to_number(value)) table.put(p, key, "", "varied", *number);
+    group.attributes.emplace_back(fmt::format("label_{:04}", p), text_of(points[p]));
+    for (const std::string& assignment : points[p])
+      if (const auto number = to_number(assignment.substr(assignment.find('=') + 1)))
+        table.put(p, std::string(key_of(assignment)), "", "varied", *number);
   }
   for (std::size_t p = 0; p < points.size(); ++p) {
     const EnsembleState& state = *states[p];
@@ -199,18 +193,17 @@ Study sweep_of(const std::string& scene, const std::vector<std::string>& overrid
   varied.sweep = sweep;
   const auto points = sweep_points(sweep);
   for (const std::string& given : overrides) {
-    const std::string key = key_of(given);
-    const auto sets = [&](const SweepPoint& point) {
-      return std::ranges::find(point, key, &SweepPoint::value_type::first) != point.end();
-    };
+    const auto key = key_of(given);
+    const auto sets = [&](const SweepPoint& point) { return std::ranges::find(point, key, key_of) != point.end(); };
     if (std::ranges::all_of(points, sets))
-      throw Error({"--set", 0, key}, "every point of the sweep sets it too", given, "leave out one of the two");
+      throw Error({"--set", 0, std::string(key)}, "every point of the sweep sets it too", given,
+                  "leave out one of the two");
   }
   Study study{.kind = "sweep", .scene = std::move(varied), .points = {}};
   study.scene.sweep.replicas = 1;  // the number of replicas is not part of the study
   for (std::size_t p = 0; p < points.size(); ++p) {
     std::vector<std::string> all = overrides;
-    for (const auto& [key, value] : points[p]) all.push_back(key + "=" + value);
+    all.insert(all.end(), points[p].begin(), points[p].end());
     Scene at = read_scene(scene, all);
     at.sweep = {};
     at.sweep.replicas = 1;

@@ -242,13 +242,11 @@ Entries read_entries(std::string_view toml, const std::string& source_name) {
   }
 }
 
-std::string key_of(std::string_view assignment) {
-  return std::string(trimmed(assignment.substr(0, assignment.find('='))));
-}
+std::string_view key_of(std::string_view assignment) { return trimmed(assignment.substr(0, assignment.find('='))); }
 
 void apply_override(Entries& entries, std::string_view assignment) {
   const auto equals = assignment.find('=');
-  const std::string key = key_of(assignment);
+  const std::string key(key_of(assignment));
   if (equals == assignment.npos || key.empty())
     throw Error({"--set", 0, {}}, "not an assignment", assignment, "write table.key=value");
   const Place place{"--set", 0, key};

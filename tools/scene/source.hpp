@@ -32,7 +32,7 @@ using Entries = std::map<std::string, Value, std::less<>>;
 Entries read_entries(std::string_view toml, const std::string& source_name);
 
 /// The key of an assignment `table.key=value`.
-std::string key_of(std::string_view assignment);
+std::string_view key_of(std::string_view assignment);
 
 /// Applies one `table.key=value`: the value is TOML or else a bare word, which is a text; an empty value removes the
 /// key. A table or array replaces the old one completely, and so does a key of a table where there was no table.

@@ -22,27 +22,27 @@ TEST(SweepPoints, AreEvenAndKeepTheEndsAsWritten) {
   const auto points = sweep_points(of({"law.loss=0.1:0.5:5"}));
   ASSERT_EQ(points.size(), 5U);
   for (const char* value : {"0.1", "0.2", "0.3", "0.4", "0.5"})
-    EXPECT_EQ(points[static_cast<std::size_t>(value[2] - '1')], (SweepPoint{{"law.loss", value}}));
+    EXPECT_EQ(points[static_cast<std::size_t>(value[2] - '1')], SweepPoint{std::string("law.loss=") + value});
   const auto decades = sweep_points(of({"law.loss=1e-3:1e1:5:log"}));
   ASSERT_EQ(decades.size(), 5U);
-  EXPECT_EQ(decades.front()[0].second, "1e-3");
-  EXPECT_EQ(decades[1][0].second, "0.01");
-  EXPECT_EQ(decades[2][0].second, "0.1");
-  EXPECT_EQ(decades.back()[0].second, "1e1");
+  EXPECT_EQ(decades.front()[0], "law.loss=1e-3");
+  EXPECT_EQ(decades[1][0], "law.loss=0.01");
+  EXPECT_EQ(decades[2][0], "law.loss=0.1");
+  EXPECT_EQ(decades.back()[0], "law.loss=1e1");
 }
 
 TEST(SweepPoints, CombineOrCutOrStandOneByOne) {
   const std::vector<std::string> two{"law.loss=0.1,0.2", "initial.speed=1:3:3"};
   const auto grid = sweep_points(of(two));
   ASSERT_EQ(grid.size(), 6U);
-  EXPECT_EQ(grid[1], (SweepPoint{{"law.loss", "0.1"}, {"initial.speed", "2"}}));
-  EXPECT_EQ(grid[3], (SweepPoint{{"law.loss", "0.2"}, {"initial.speed", "1"}}));
+  EXPECT_EQ(grid[1], (SweepPoint{"law.loss=0.1", "initial.speed=2"}));
+  EXPECT_EQ(grid[3], (SweepPoint{"law.loss=0.2", "initial.speed=1"}));
   const auto cuts = sweep_points(of(two, true));
   ASSERT_EQ(cuts.size(), 5U);
-  EXPECT_EQ(cuts[4], (SweepPoint{{"initial.speed", "3"}}));
+  EXPECT_EQ(cuts[4], SweepPoint{"initial.speed=3"});
   const auto given = sweep_points(of({}, false, {"law.type=wet law.loss=0.3", "law.type=sticky"}));
   ASSERT_EQ(given.size(), 2U);
-  EXPECT_EQ(given[0], (SweepPoint{{"law.type", "wet"}, {"law.loss", "0.3"}}));
+  EXPECT_EQ(given[0], (SweepPoint{"law.type=wet", "law.loss=0.3"}));
 }
 
 TEST(SweepPoints, RefuseWhatTheyCannotRead) {

@@ -57,7 +57,7 @@ std::string commented(const Scene& scene, const std::string& file) {
 Exit make(const NewArguments& options) {
   const Scene scene = to_start_from(options.from);
   if (std::filesystem::exists(file_behind(options.file)))
-    throw Error({options.file, 0, ""}, "the file is there already", "", "choose another name", Exit::io);
+    throw Error({options.file}, "the file is there already", "", "choose another name", Exit::io);
   replace_file(options.file, commented(scene, options.file));
   fmt::print("wrote {0}: change it, then `cradle run {0}`\n", options.file);
   return Exit::done;

@@ -54,9 +54,7 @@ class TemporaryFolder {
   }
 
  private:
-  Error no_room() const {
-    return {{path_, 0, ""}, "no temporary files", "", "make room on the disk or set TMPDIR", Exit::io};
-  }
+  Error no_room() const { return {{path_}, "no temporary files", "", "make room on the disk or set TMPDIR", Exit::io}; }
 
   std::string path_;
 };
@@ -119,7 +117,7 @@ Exit run_python(const std::string& command, const PageArguments& arguments, cons
   if (forced) words.push_back("--force");
   const int status = execute(words, false);
   if (status != 0 && status != static_cast<int>(Exit::bad_input) && status != static_cast<int>(Exit::io))
-    throw Error({file, 0, ""}, fmt::format("{} could not be made", what), fmt::format("status {}", status),
+    throw Error({file}, fmt::format("{} could not be made", what), fmt::format("status {}", status),
                 "see the message above", Exit::io);
   return static_cast<Exit>(status);
 }

@@ -25,7 +25,7 @@ Exit resume(const ResumeArguments& options) {
   const std::string path = RunFiles::journal_of(file);
   if (const auto journal = journal_header(path); journal && !journal->of_run()) {
     if (journal->kind == threshold_kind)
-      throw Error({path, 0, ""}, "a search for a threshold", journal->name, "repeat its command, which continues it");
+      throw Error({path}, "a search for a threshold", journal->name, "repeat its command, which continues it");
     if (options.until)
       throw Error({"--until", 0, ""}, "an ensemble has no later end", *options.until, "give it a file of its own");
     return run_study_command(options, [&] { return StudyPlan{study_in(*journal, path), journal->wanted, file}; });

@@ -49,7 +49,7 @@ void EnsembleStore::check_identity(const JournalHeader& there, const std::string
   if (found.empty() && there.spreads != study_.spreads)
     found = fmt::format("{}, here {}", spreads_text(there.spreads), spreads_text(study_.spreads));
   if (found.empty()) found = "another version of the program, or other listed particles";
-  throw Error({path, 0, ""}, "holds ensembles of something else", found, otherwise);
+  throw Error({path}, "holds ensembles of something else", found, otherwise);
 }
 
 void EnsembleStore::load_result(const char* otherwise) {
@@ -65,7 +65,7 @@ void EnsembleStore::check_replaces(const std::string& file) const {
   there.load_result();
   for (std::size_t k = 0; k < states_.size(); ++k)
     if (!states_[k]->holds_all_of(*there.states_[k]))
-      throw Error({file, 0, ""}, "holds replicas that none of the files has", "",
+      throw Error({file}, "holds replicas that none of the files has", "",
                   "merge it too, give another -o FILE, or --force to replace it");
 }
 
@@ -105,14 +105,14 @@ std::string EnsembleStore::read_journal(const std::string& path, std::uint64_t& 
   JournalReader reader(path);
   const JournalHeader& header = reader.header();
   if (header.of_run())
-    throw Error({path, 0, ""}, "the journal of a run", "", "continue it by `cradle resume`, or give another -o FILE",
+    throw Error({path}, "the journal of a run", "", "continue it by `cradle resume`, or give another -o FILE",
                 Exit::io);
   check_identity(header, path);
   if (wanted_.count == 0) wanted_ = header.wanted;
   EnsembleStates states = empty_states();
   while (auto record = reader.next<EnsembleRecord>()) {
     if (record->point >= states.size())
-      throw Error({path, 0, ""}, "a record of no ensemble", fmt::format("number {}", record->point), "remove the file",
+      throw Error({path}, "a record of no ensemble", fmt::format("number {}", record->point), "remove the file",
                   Exit::io);
     states[record->point]->apply(std::move(*record));
   }
@@ -132,7 +132,7 @@ void EnsembleStore::take(EnsembleStates& others, const std::string& from) {
     else if (!states_[k]->holds_any_of(*others[k]))
       states_[k]->take(*others[k]);
     else
-      throw Error({from, 0, ""}, "has some replicas in common with other files of this ensemble", "",
+      throw Error({from}, "has some replicas in common with other files of this ensemble", "",
                   "remove those files that do not belong to it", Exit::io);
   }
 }

@@ -13,7 +13,7 @@ namespace cradle::tools {
 namespace {
 
 Error lacking(const std::string& file, std::string_view what) {
-  return {{file, 0, ""},
+  return {{file},
           "not an ensemble, or a damaged one",
           fmt::format("no {}", what),
           "give a file that `cradle ensemble` or `cradle merge` wrote",
@@ -188,8 +188,7 @@ void EnsembleState::read(const Result& result, const std::string& file) {
   std::vector<const std::vector<double>*> numbers;
   for (const Column& column : layout_.numbers) numbers.push_back(&get<double>(table, column.name, file));
   for (const Column& column : table.columns)
-    if (column.rows() != index.size())
-      throw damaged_ensemble({file, 0, ""}, "columns of /replicas of different lengths");
+    if (column.rows() != index.size()) throw damaged_ensemble({file}, "columns of /replicas of different lengths");
   std::set<ReplicaIndex> stopped;
   for (std::size_t k = 0; k < index.size(); ++k) {
     const auto how = static_cast<RunEnd>(std::min<std::uint64_t>(outcome[k], outcome_count - 1));

@@ -101,7 +101,7 @@ void EnsembleState::take(EnsembleState& other) {
 
 void EnsembleState::take(TreeNode&& node, const std::string& from) {
   const Moments& m = node.moments;
-  const auto wrong = [&](const std::string& found) { return damaged_ensemble({from, 0, ""}, found); };
+  const auto wrong = [&](const std::string& found) { return damaged_ensemble({from}, found); };
   if (node.level > 62 || m.replicas > node.range().count)
     throw wrong(fmt::format("{} replicas in a node of level {}", m.replicas, node.level));
   if (m.replicas > 0 && m.entries() != layout_.entries)
@@ -121,7 +121,7 @@ void EnsembleState::take(TreeNode&& node, const std::string& from) {
 
 void EnsembleState::take_counts(std::size_t spread, std::vector<std::uint64_t> counts, const std::string& from) {
   if (spread >= spreads_.size() || counts.size() != spreads_[spread].counts.all_counts().size())
-    throw damaged_ensemble({from, 0, ""}, fmt::format("{} counts for the spread {}", counts.size(), spread));
+    throw damaged_ensemble({from}, fmt::format("{} counts for the spread {}", counts.size(), spread));
   Histograms& all = spreads_[spread].counts;
   Histograms other(all.bins(), all.entries());
   other.set_all_counts(std::move(counts));
@@ -194,7 +194,7 @@ void EnsembleState::apply(EnsembleRecord&& record) {
       }))
     return;
   if (record.rows.size() > 0 && record.rows.numbers() != table_.numbers())
-    throw damaged_ensemble({from, 0, ""}, fmt::format("{} numbers a row", record.rows.numbers()));
+    throw damaged_ensemble({from}, fmt::format("{} numbers a row", record.rows.numbers()));
   for (TreeNode& node : record.nodes) take(std::move(node), from);
   const std::scoped_lock lock(mutex_);
   table_.add(record.rows);
@@ -203,7 +203,7 @@ void EnsembleState::apply(EnsembleRecord&& record) {
   std::size_t wanted = 0;
   for (const Spread& spread : spreads_) wanted += spread.quantity.size();
   if (wanted == 0 ? !record.to_spread.empty() : record.to_spread.size() % wanted != 0)
-    throw damaged_ensemble({from, 0, ""}, fmt::format("{} numbers for spreads", record.to_spread.size()));
+    throw damaged_ensemble({from}, fmt::format("{} numbers for spreads", record.to_spread.size()));
   for (auto at = record.to_spread.begin(); at != record.to_spread.end();)
     for (auto& [quantity, counts] : spreads_) {
       counts.add({at, at + static_cast<std::ptrdiff_t>(quantity.size())});

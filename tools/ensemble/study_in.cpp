@@ -14,7 +14,7 @@ namespace cradle::tools {
 JournalHeader header_in(const Result& result, const std::string& file, const char* otherwise) {
   const auto& of_file = result.attributes;
   if (std::ranges::find(of_file, "identity", &Attribute::first) == of_file.end())
-    throw Error({file, 0, ""}, "holds no ensemble", "a single run, or another command's result", otherwise);
+    throw Error({file}, "holds no ensemble", "a single run, or another command's result", otherwise);
   JournalHeader header{attribute<std::string>(of_file, "kind", file),
                        attribute<std::uint64_t>(of_file, "identity", file),
                        attribute<std::string>(of_file, "scene", file), attribute<std::string>(of_file, "name", file)};
@@ -49,7 +49,7 @@ Study study_described(const JournalHeader& header, const std::string& path, cons
   if (study.identity() != header.identity) throw of_other_scenes;
   // The identity is that of the points, not of the scene that is varied.
   if (const std::size_t n = study.points.size(); study.kind == "sweep" && sweep_points(study.scene.sweep).size() != n)
-    throw Error({path, 0, ""}, "a sweep with other points than its scene", fmt::format("{} points", n),
+    throw Error({path}, "a sweep with other points than its scene", fmt::format("{} points", n),
                 "make it anew, or remove it", Exit::io);
   return study;
 }
@@ -63,7 +63,7 @@ std::string describe(const std::vector<ReplicaRange>& ranges) {
 
 Study study_in(const JournalHeader& journal, const std::string& path) {
   return study_described(journal, path,
-                         {{path, 0, ""},
+                         {{path},
                           "its scenes are not those of its replicas",
                           "another identity",
                           "take it from a copy, or remove it",
@@ -74,7 +74,7 @@ std::unique_ptr<EnsembleStore> merged(const std::vector<std::string>& files) {
   const std::string& first = files.front();
   const Study study = study_described(
       header_in(read_result(first), first, "give a file that `cradle ensemble` or `cradle sweep` wrote"), first,
-      {{first, 0, ""},
+      {{first},
        "cannot be merged here",
        "another version's file, or a scene that was changed in it",
        "use the program that wrote it"});
@@ -85,8 +85,8 @@ std::unique_ptr<EnsembleStore> merged(const std::vector<std::string>& files) {
     for (std::size_t k = 0; k < all->states().size(); ++k) {
       EnsembleState &into = *all->states()[k], &from = *one.states()[k];
       if (into.holds_any_of(from))
-        throw Error({file, 0, ""}, "has replicas that another of the files has too",
-                    describe(from.replicas().present()), "merge files of different replicas (--first)");
+        throw Error({file}, "has replicas that another of the files has too", describe(from.replicas().present()),
+                    "merge files of different replicas (--first)");
       into.take(from);
     }
   }

@@ -85,7 +85,7 @@ class Folder {
 
  private:
   [[noreturn]] void refuse(const std::string& found) const {
-    throw Error({path_.string(), 0, ""}, "a folder with other files", found,
+    throw Error({path_.string()}, "a folder with other files", found,
                 "give another --to DIR, or --force to replace them");
   }
 

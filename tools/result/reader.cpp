@@ -83,7 +83,7 @@ Result read_hdf5(const Source& source) {
   check(H5Pset_file_locking(access, false, true), source.path + ": no property list");
   const hid_t id = H5Fopen(source.path.c_str(), H5F_ACC_RDONLY, access);
   if (id < 0)
-    throw Error({source.path, 0, ""}, "not an HDF5 file, or a damaged one", "", "give a result file that cradle wrote",
+    throw Error({source.path}, "not an HDF5 file, or a damaged one", "", "give a result file that cradle wrote",
                 Exit::io);
   const Handle file(id, H5Fclose, source.path + ": could not be opened");
   Result result;

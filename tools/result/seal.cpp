@@ -22,7 +22,7 @@ namespace {
 constexpr std::string_view seal_begin = "CRADLES1";
 
 Error unreadable(const std::string& path, const char* found) {
-  return {{path, 0, ""}, "not a file that can be read", found, "give a result file that cradle wrote", Exit::io};
+  return {{path}, "not a file that can be read", found, "give a result file that cradle wrote", Exit::io};
 }
 
 // The checksum of the first `size` bytes.
@@ -59,13 +59,13 @@ void check_seal(const std::string& path) {
   const auto status = std::filesystem::status(path, error);
   if (!std::filesystem::exists(status) && path.ends_with(".part"))
     throw Error(
-        {path, 0, ""}, "no run in progress", "no such file",
+        {path}, "no run in progress", "no such file",
         fmt::format("give {}, which a run leaves when it is complete; if that is not there either, run the scene: "
                     "there is a journal after its first two seconds",
                     path.substr(0, path.size() - 5)),
         Exit::io);
   if (!std::filesystem::exists(status))
-    throw Error({path, 0, ""}, "no such file", "", "give a result file that cradle wrote", Exit::io);
+    throw Error({path}, "no such file", "", "give a result file that cradle wrote", Exit::io);
   // Opening a FIFO would wait for ever.
   if (!std::filesystem::is_regular_file(status)) throw unreadable(path, "a folder, FIFO or device");
   std::ifstream file(path, std::ios::binary);
@@ -78,7 +78,7 @@ void check_seal(const std::string& path) {
     return part;
   };
   const auto damaged = [&](const std::string& found) {
-    return Error({path, 0, ""}, "damaged", found, "take it from a copy, or make it anew", Exit::io);
+    return Error({path}, "damaged", found, "take it from a copy, or make it anew", Exit::io);
   };
   constexpr std::uint64_t superblock = 48;
   if (error || size < superblock) return;

@@ -186,7 +186,7 @@ void write_in_pieces(const Result& ends, const Pieces& pieces, const std::string
     open.clear();
     check(H5Fflush(file, H5F_SCOPE_GLOBAL), no_room);
   } catch (const Error& error) {
-    throw Error({path, 0, ""}, "could not be written", error.what(), "make room on its disk", Exit::io);
+    throw Error({path}, "could not be written", error.what(), "make room on its disk", Exit::io);
   }
   whole.append(seal_of_file(whole.name()));
   whole.put_in_place();
@@ -204,8 +204,7 @@ void write_or_keep(const Result& result, const std::string& path) {
   }
   try {
     std::string folder = (std::filesystem::temp_directory_path() / "cradle-XXXXXX").string();
-    if (::mkdtemp(folder.data()) == nullptr)
-      throw Error({folder, 0, ""}, "could not be made", "", "make room", Exit::io);
+    if (::mkdtemp(folder.data()) == nullptr) throw Error({folder}, "could not be made", "", "make room", Exit::io);
     const auto elsewhere = (folder / std::filesystem::path(path).filename()).string();
     replace_file(elsewhere, image);
     trouble += "; what was computed is in " + elsewhere + ", move it from there";

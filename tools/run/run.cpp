@@ -46,8 +46,7 @@ Scene without_tables(Scene scene) {
 
 void SceneRun::require_in_progress() const {
   if (over_)
-    throw Error({scene_.name, 0, ""}, "the run is over",
-                std::string(end_row(over_->end).text) + " at t = " + time().text(),
+    throw Error({scene_.name}, "the run is over", std::string(end_row(over_->end).text) + " at t = " + time().text(),
                 "write its result, or begin another one");
 }
 

@@ -39,7 +39,7 @@ void RunGuards::require_between_walls(const RunState& now) const {
 
 void RunGuards::require_held(const RunState& now, bool of_particles) const {
   if (const char* what = now.beyond_range(of_particles))
-    throw Error({scene_.name, 0, ""}, fmt::format("{} beyond the range of {}", what, precision_name(scene_.run)),
+    throw Error({scene_.name}, fmt::format("{} beyond the range of {}", what, precision_name(scene_.run)),
                 "at t = " + now.time.exact.text(), "give an earlier run.until, smaller speeds or a wider run.precision",
                 Exit::lost);
 }

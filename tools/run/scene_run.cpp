@@ -196,11 +196,10 @@ class EngineRun final : public SceneRun {
     if (until.text == scene_.run.until.text) return end_;
     const RunTime time(round_(until.text), until.text);
     if (time.exact < time_.exact)
-      throw Error({scene_.name, 0, ""}, "a time in the past", until.text,
+      throw Error({scene_.name}, "a time in the past", until.text,
                   "the run is at t = " + time_.meant.text() + " and goes forward only");
     if (end_.exact < time.exact)
-      throw Error({scene_.name, 0, ""}, "a time after the end", until.text,
-                  "the end is run.until = " + scene_.run.until.text);
+      throw Error({scene_.name}, "a time after the end", until.text, "the end is run.until = " + scene_.run.until.text);
     return time;
   }
 

@@ -231,7 +231,7 @@ Entries read_entries(std::string_view toml, const std::string& source_name) {
   try {
     const toml::table table = toml::parse(document);
     Entries entries;
-    flatten(table, Literals(document), Place{source_name, 0, {}}, entries);
+    flatten(table, Literals(document), Place{source_name}, entries);
     return entries;
   } catch (const toml::parse_error& error) {
     std::string_view what = error.description();

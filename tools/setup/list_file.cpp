@@ -204,7 +204,7 @@ ListedParticles placed(ListedColumns listed, const Decimal& length, const Place&
 
 ListedParticles parse_list(std::istream& csv, const std::string& file_name, const Run& run, const Decimal& length) {
   Reader reader(file_name, run);
-  Place place{file_name, 0, {}};
+  Place place{file_name};
   std::string line;
   std::vector<std::string_view> cells;
   while (std::getline(csv, line)) {
@@ -223,24 +223,23 @@ ListedParticles parse_list(std::istream& csv, const std::string& file_name, cons
                   fmt::format("give {} as in the first line", reader.columns()));
     reader.add(cells, place.line);
   }
-  if (csv.bad()) throw Error({file_name, 0, {}}, "cannot be read", "a read error", "check the disk", Exit::io);
+  if (csv.bad()) throw Error({file_name}, "cannot be read", "a read error", "check the disk", Exit::io);
   if (reader.listed().v.empty())
-    throw Error({file_name, 0, {}}, "no particles",
-                reader.columns() == 0 ? "an empty file" : "only the names of the columns",
+    throw Error({file_name}, "no particles", reader.columns() == 0 ? "an empty file" : "only the names of the columns",
                 "give a line x,v or x,v,m and then one line per particle");
   const bool sums = !reader.listed().gap.empty();
-  ListedParticles particles = placed(reader.listed(), length, {file_name, 0, {}});
+  ListedParticles particles = placed(reader.listed(), length, {file_name});
   if (sums) check_order(particles, run, [&](std::size_t i) { return Place{file_name, 0, fmt::format("gap {}", i)}; });
   return particles;
 }
 
 void read_list(const std::filesystem::path& path, Scene& scene) {
   if (const auto found = instead_of_file(path.string()); !found.empty())
-    throw Error({path.string(), 0, {}}, "not a list of particles", found,
+    throw Error({path.string()}, "not a list of particles", found,
                 "name a CSV file of particles or a result in initial.file, relative to the scene file", Exit::io);
   std::ifstream file(path, std::ios::binary);
   if (!file)
-    throw Error({path.string(), 0, {}}, "the list of particles cannot be read", "no such file, or no permission",
+    throw Error({path.string()}, "the list of particles cannot be read", "no such file, or no permission",
                 "correct initial.file, which is relative to the scene file", Exit::io);
   char first = 0;
   const bool is_result = file.get(first) && first == '\x89';  // as HDF5 begins

@@ -192,14 +192,13 @@ Scene read_scene(const std::string& path_or_name, const std::vector<std::string>
   const bool exists = std::filesystem::exists(path_or_name, unreadable);
   if (exists && !std::filesystem::is_directory(path_or_name, unreadable)) {
     if (const auto found = instead_of_file(path_or_name); !found.empty())
-      throw Error({path_or_name, 0, {}}, "not a scene file", found, "save the scene in a file and give this", Exit::io);
+      throw Error({path_or_name}, "not a scene file", found, "save the scene in a file and give this", Exit::io);
     std::ifstream file(path_or_name, std::ios::binary);
     std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
     if (!file || file.bad())
-      throw Error({path_or_name, 0, {}}, "cannot be read", "a file that does not open", "check its permissions",
-                  Exit::io);
+      throw Error({path_or_name}, "cannot be read", "a file that does not open", "check its permissions", Exit::io);
     if (text.starts_with("\x89HDF"))
-      throw Error({path_or_name, 0, {}}, "a result, not a scene", "HDF5",
+      throw Error({path_or_name}, "a result, not a scene", "HDF5",
                   fmt::format("give the scene file, or the csv/scene.toml that `cradle export {0} --to csv` writes; "
                               "`cradle info {0}` shows what is in it",
                               path_or_name));
@@ -207,7 +206,7 @@ Scene read_scene(const std::string& path_or_name, const std::vector<std::string>
   }
   for (const BundledScene& scene : bundled_scenes())
     if (scene.name == path_or_name) return parse_scene(scene.text, path_or_name + ".toml", overrides);
-  throw Error({path_or_name, 0, {}}, "no such scene", exists ? "a folder" : "neither a file nor a bundled scene",
+  throw Error({path_or_name}, "no such scene", exists ? "a folder" : "neither a file nor a bundled scene",
               similar_scene(path_or_name), Exit::io);
 }
 

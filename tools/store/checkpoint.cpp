@@ -42,7 +42,7 @@ void StateWriter::finish() {
 
 Error StateReader::damaged(const std::string& what) const {
   const bool own = path_.ends_with(".checkpoint");  // else a file that somebody gave, perhaps a result
-  return {{path_, 0, ""},
+  return {{path_},
           "not a checkpoint, or damaged",
           what,
           own ? "remove it: the run then starts anew" : "give a checkpoint",
@@ -53,8 +53,7 @@ StateReader::StateReader(const std::string& path) : path_(path) {
   stored_in(path);  // throws for other formats
   if (!instead_of_file(path).empty()) throw damaged("no file");
   file_.open(path, std::ios::binary);
-  if (!file_)
-    throw Error({path, 0, ""}, "could not be read", std::strerror(errno), "check its name and rights", Exit::io);
+  if (!file_) throw Error({path}, "could not be read", std::strerror(errno), "check its name and rights", Exit::io);
   constexpr std::uint64_t frame = begin.size() + sizeof(std::uint64_t);
   const std::uint64_t size = std::filesystem::file_size(path);
   if (size < frame) throw damaged("too short");

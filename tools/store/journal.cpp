@@ -22,7 +22,7 @@ constexpr std::size_t begin_size = 8;
 constexpr std::uint64_t frame = 16;  // bytes that a record takes besides its contents
 
 [[noreturn]] void fail_journal(const std::string& path, const char* what) {
-  throw Error({path, 0, ""}, what, std::strerror(errno), "check the folder and the space on its disk", Exit::io);
+  throw Error({path}, what, std::strerror(errno), "check the folder and the space on its disk", Exit::io);
 }
 
 std::uint64_t checksum(std::uint64_t length, std::string_view record) { return crc64(record, crc64(to_bytes(length))); }
@@ -55,7 +55,7 @@ Stored stored_in(const std::string& path) {
 
 void check_program(const std::string& found, const std::string& path) {
   if (found != version)
-    throw Error({path, 0, ""}, "of another version of the program", fmt::format("{}, here {}", found, version),
+    throw Error({path}, "of another version of the program", fmt::format("{}, here {}", found, version),
                 "continue with that one, or remove the file: its scene then starts anew", Exit::io);
 }
 
@@ -69,7 +69,7 @@ JournalReader::JournalReader(const std::string& path) : path_(path) {
     whole_ = begin_size;
   }
   if (!file_.is_open() || !next(record))
-    throw Error({path, 0, ""}, "not a journal of this version of the program, or its beginning is damaged", "",
+    throw Error({path}, "not a journal of this version of the program, or its beginning is damaged", "",
                 "take it from a copy, or remove it", Exit::io);
   try {
     SavedState from(std::move(record));
@@ -78,7 +78,7 @@ JournalReader::JournalReader(const std::string& path) : path_(path) {
     check_program(program, path);
     load(from, header_);
   } catch (const std::invalid_argument& error) {
-    throw Error({path, 0, ""}, "a damaged journal", error.what(), "take it from a copy, or remove it", Exit::io);
+    throw Error({path}, "a damaged journal", error.what(), "take it from a copy, or remove it", Exit::io);
   }
 }
 

@@ -28,7 +28,7 @@ std::string precision_words(const Run& run) {
 }
 
 [[noreturn]] void refuse(const std::string& file, const char* what, const std::string& found) {
-  throw Error({file, 0, ""}, what, found, "give another -o FILE, or --force to replace it");
+  throw Error({file}, what, found, "give another -o FILE, or --force to replace it");
 }
 
 bool nothing_to_lose(const std::string& file) {

@@ -145,7 +145,7 @@ void RunFiles::resume(const std::optional<std::string>& until) {
   const CheckpointHeader found = state_ ? state_->header() : CheckpointHeader();
   const bool later = until && Decimal(*until) != scene_.run.until;
   if (later && state_ && !(found.time < scene_.run.until.value))
-    throw Error({file_, 0, ""}, "not written yet", "the run has reached its end",
+    throw Error({file_}, "not written yet", "the run has reached its end",
                 fmt::format("finish it first: `cradle resume {}`", file_));
   if (later && begins_again(scene_)) {
     state_.reset();
@@ -162,7 +162,7 @@ void RunFiles::resume(const std::optional<std::string>& until) {
   const auto read = [&](const JournalWriter::Put& put) {
     const auto there = end_of_records(path, records_, check_, put);
     if (!there || (state_ && check_ != found.check))
-      throw Error({path, 0, ""}, "damaged before its checkpoint",
+      throw Error({path}, "damaged before its checkpoint",
                   fmt::format("other records than the {} that were there", records_),
                   "take it from a copy, or remove it: the run then starts anew", Exit::io);
     end = *there;
@@ -178,8 +178,7 @@ void RunFiles::resume(const std::optional<std::string>& until) {
 
 void RunFiles::resume_from_result(const std::optional<std::string>& until) {
   if (!exists(file_))
-    throw Error({file_, 0, ""}, "nothing to continue from", "neither a result nor a journal", "run the scene",
-                Exit::io);
+    throw Error({file_}, "nothing to continue from", "neither a result nor a journal", "run the scene", Exit::io);
   Result result = read_result(file_, Reading::ends);
   scene_ = scene_in(result.attributes, file_);
   if (find_attribute<std::string>(result.attributes, "kind") != nullptr && until)
@@ -199,12 +198,12 @@ void RunFiles::resume_from_result(const std::optional<std::string>& until) {
     const CheckpointHeader& found = state_->header();
     header_.every_seconds = found.run.every_seconds;
     if (found.run.scene != effective_toml(scene_) || found.time != scene_.run.until.value)
-      throw Error({state, 0, ""}, "not the end of this run", fmt::format("t = {:.10g}", found.time),
+      throw Error({state}, "not the end of this run", fmt::format("t = {:.10g}", found.time),
                   "run the scene with a later run.until", Exit::io);
     if (begins_again(scene_)) state_.reset();
   }
   if (const std::uint64_t numbers = numbers_in(result.groups); state_ && numbers > most_in_memory)
-    throw Error({file_, 0, ""}, "too large to be extended", fmt::format("{} numbers", numbers),
+    throw Error({file_}, "too large to be extended", fmt::format("{} numbers", numbers),
                 "run the scene with a later run.until", Exit::io);
   not_extended_ = lists_not_extended(scene_, Decimal(*until));
   scene_ = extended(scene_, *until, file_);

@@ -31,7 +31,7 @@ RunFiles::RunFiles(std::string file, const Scene& scene, Force force)
     : Sink(Tables::for_file), file_(std::move(file)), scene_(scene) {
   const std::string path = journal_of(file_);
   const auto refuse = [&](const char* what, const std::string& found) {
-    throw Error({path, 0, ""}, what, found,
+    throw Error({path}, what, found,
                 fmt::format("continue with `cradle resume {}`, give another -o FILE, or --force to replace it", file_));
   };
   const auto header = force == Force::yes ? std::nullopt : journal_header(path);
@@ -137,7 +137,7 @@ void RunFiles::end(std::vector<Attribute>&& attributes, RunEnd how) {
   // Rows in memory are gone after the last time.
   const auto pieces = [&](bool last_time, const std::function<void(Group &&)>& each) {
     if (journal_ && for_each_piece(path, each) != records_)
-      throw Error({path, 0, ""}, "not what was written", "records are missing",
+      throw Error({path}, "not what was written", "records are missing",
                   "check the disk; `cradle resume` continues from the last checkpoint", Exit::io);
     for (Group& rows : waiting_.tables()) last_time ? each(std::move(rows)) : each(Group(rows));
   };

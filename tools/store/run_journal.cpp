@@ -11,10 +11,10 @@ namespace cradle::tools {
 RunJournal read_run_journal(const std::string& path, Reading reading) {
   JournalReader records(path);
   if (records.header().kind == threshold_kind)
-    throw Error({path, 0, ""}, "runs of a threshold that is not found yet", records.header().name,
+    throw Error({path}, "runs of a threshold that is not found yet", records.header().name,
                 "repeat its command, which continues it", Exit::io);
   if (!records.header().of_run())
-    throw Error({path, 0, ""}, "replicas that are not finished, no statistics yet", "",
+    throw Error({path}, "replicas that are not finished, no statistics yet", "",
                 fmt::format("`cradle resume {}` continues with them, `cradle info {}` prints how many are finished",
                             path.substr(0, path.rfind(".part")), path),
                 Exit::io);

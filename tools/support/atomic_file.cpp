@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 constexpr const char* make_room = "check the folder and the space on its disk";
 
 [[noreturn]] void fail(const std::string& path, const char* what, const char* advice = make_room) {
-  throw Error({path, 0, ""}, what, std::strerror(errno), advice, Exit::io);
+  throw Error({path}, what, std::strerror(errno), advice, Exit::io);
 }
 
 std::string folder_of(const std::string& path) {
@@ -110,10 +110,10 @@ std::string file_behind(const std::string& path) {
       continue;
     }
     if (const std::string_view other = instead_of_file(found); !other.empty())
-      throw Error({path, 0, ""}, "cannot be written", other, "give another -o FILE", Exit::io);
+      throw Error({path}, "cannot be written", other, "give another -o FILE", Exit::io);
     return target.string();
   }
-  throw Error({path, 0, ""}, "cannot be written", "links that lead nowhere", "give another -o FILE", Exit::io);
+  throw Error({path}, "cannot be written", "links that lead nowhere", "give another -o FILE", Exit::io);
 }
 
 std::string_view instead_of_file(const std::string& path) {
@@ -147,8 +147,8 @@ FileClaim::FileClaim(const std::string& path) : lock_(hidden_beside(file_behind(
     while (::flock(file, LOCK_EX | LOCK_NB) != 0 && errno != ENOLCK && errno != ENOSYS && errno != ENOTSUP) {
       if (errno == EINTR) continue;
       if (errno != EWOULDBLOCK) fail(path, "cannot be locked", "give another -o FILE");
-      throw Error({path, 0, ""}, "another program is writing this file", owner(file),
-                  "wait for it, or give another -o FILE", Exit::io);
+      throw Error({path}, "another program is writing this file", owner(file), "wait for it, or give another -o FILE",
+                  Exit::io);
     }
     if (!same_file(file, lock_)) continue;  // the previous owner has just removed it
     write_owner(file);

@@ -48,9 +48,9 @@ inline std::string excerpt(std::string_view text) {
 
 /// A place in the input; each part may be missing (empty, or line 0).
 struct Place {
-  std::string source;    // file as the user named it, or "--set"
-  std::size_t line = 0;  // from 1; 0: unknown
-  std::string key;       // "law.restitution"
+  std::string source = {};  // file as the user named it, or "--set"
+  std::size_t line = 0;     // from 1; 0: unknown
+  std::string key = {};     // "law.restitution"
 
   /// "fig2.toml:7: law.restitution: ", "--set law.restitution: ", "" where nothing is known.
   std::string prefix() const {

@@ -19,7 +19,7 @@ std::string build_description() {
 }
 
 Error of_version(const std::string& path, std::uint64_t found, std::uint64_t here) {
-  return {{path, 0, ""},
+  return {{path},
           fmt::format("a file of {} version of cradle", found < here ? "an earlier" : "a later"),
           fmt::format("format {}, here {}", found, here),
           "read it with the version that wrote it, or remove it and run its scene again",

@@ -60,7 +60,7 @@ class Search {
   void take_result(const std::string& file) {
     std::error_code unreadable;
     if (!std::filesystem::exists(file, unreadable) || took(file) || options_.force == Force::yes) return;
-    throw Error({file, 0, ""}, "not a result that this command makes again", "something else",
+    throw Error({file}, "not a result that this command makes again", "something else",
                 "give another -o FILE, or --force to replace it");
   }
   // Whether the file holds a search that this one continues.
@@ -88,7 +88,7 @@ class Search {
     const auto there = journal_header(part_);
     const bool of_this = there && there->kind == kind && there->identity == wanted.identity;
     if (there && !of_this && options_.force == Force::no)
-      throw Error({part_, 0, ""}, "unfinished work of something else", there->kind,
+      throw Error({part_}, "unfinished work of something else", there->kind,
                   "let its own command finish it, or give another -o FILE, or --force to replace it");
     if (!of_this) return journal_.emplace(part_, wanted), void();
     JournalReader reader(part_);

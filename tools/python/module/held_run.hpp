@@ -126,8 +126,8 @@ class HeldRun {
     StateReader from(checkpoint);
     const JournalHeader& header = from.header().run;
     if (header.kind != kind)
-      throw Error({checkpoint, 0, ""}, "a checkpoint of another command", header.kind,
-                  "continue it with `cradle resume`", Exit::io);
+      throw Error({checkpoint}, "a checkpoint of another command", header.kind, "continue it with `cradle resume`",
+                  Exit::io);
     scene_ = scene_of(header, checkpoint);
     const Digits digits(scene_);
     begin();
@@ -135,7 +135,7 @@ class HeldRun {
     try {
       cradle::load(from, rows);
     } catch (const std::invalid_argument& error) {
-      throw Error({checkpoint, 0, ""}, "a checkpoint that cannot be continued", error.what(),
+      throw Error({checkpoint}, "a checkpoint that cannot be continued", error.what(),
                   "use the program that wrote it, or begin anew", Exit::io);
     }
     for (Group& table : rows) sink_.add(std::move(table));
@@ -173,7 +173,7 @@ class HeldRun {
     const Use use(*this);
     require_own_law("written");
     if (run_->over() == nullptr)
-      throw Error({scene_.name, 0, ""}, "not at its end", "t = " + run_->time().text(),
+      throw Error({scene_.name}, "not at its end", "t = " + run_->time().text(),
                   "advance to run.until = " + scene_.run.until.text +
                       " first, stop the run here, or save a checkpoint");
     const FileClaim claim(path);
@@ -194,7 +194,7 @@ class HeldRun {
   };
   HeldRun& require_free() {
     if (in_use_)
-      throw Error({scene_.name, 0, ""}, "the simulation is in a call", "",
+      throw Error({scene_.name}, "the simulation is in a call", "",
                   "read it between calls of advance and step, or in a function given to every()");
     return *this;
   }

@@ -35,9 +35,8 @@ StudyPlan plan(const EnsembleArguments& options) {
   std::vector<SpreadRequest> spreads;
   for (const std::string& text : options.spreads) spreads.push_back(spread(text));
   return {ensemble_of(scene, std::move(spreads)),
-          {options.first, options.replicas},
+          {{options.first, options.replicas}, options.threads, options.show(), options.force()},
           options.output_or(scene.name + "-ensemble.h5"),
-          options.force(),
           scene.remarks};
 }
 
@@ -47,7 +46,7 @@ void add_ensemble(CommandLine& program) {
   Command command = program.add("ensemble", "replicas of a scene with different perturbations, and statistics",
                                 "cradle ensemble fig4 --replicas 100");
   auto& options = command.runs<EnsembleArguments>(
-      [](const EnsembleArguments& given) { return run_study_command(given, [&] { return plan(given); }); });
+      [](const EnsembleArguments& given) { return run_study_command(given.quiet, [&] { return plan(given); }); });
   add_common_options(command, options);
   command.option("--replicas", options.replicas, {1, most_replicas},
                  "how many; those that FILE has already are not run again", Needed::yes);

@@ -28,7 +28,9 @@ Exit resume(const ResumeArguments& options) {
       throw Error({path}, "a search for a threshold", journal->name, "repeat its command, which continues it");
     if (options.until)
       throw Error({"--until", 0, ""}, "an ensemble has no later end", *options.until, "give it a file of its own");
-    return run_study_command(options, [&] { return StudyPlan{study_in(*journal, path), journal->wanted, file}; });
+    return run_study_command(options.quiet, [&] {
+      return StudyPlan{study_in(*journal, path), {journal->wanted, options.threads, options.show()}, file};
+    });
   }
   Interrupt interrupt;
   note_signals(interrupt);

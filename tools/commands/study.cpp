@@ -10,29 +10,26 @@
 
 namespace cradle::tools {
 
-Exit run_study_command(const RunningOptions& options, const std::function<StudyPlan()>& make_plan) {
+Exit run_study_command(bool quiet, const std::function<StudyPlan()>& make_plan) {
   Interrupt interrupt;
   note_signals(interrupt);
   const std::unique_ptr<Processes> processes = make_processes(interrupt);
   StudyPlan plan;
   if (!processes->together([&] { plan = make_plan(); })) return Exit::done;
-  if (processes->rank() == 0) notify(same_replicas_warning(plan.study, plan.replicas.count));
-  if (processes->rank() == 0 && !options.quiet) notify(plan.note);
+  if (processes->rank() == 0) notify(same_replicas_warning(plan.study, plan.options.replicas.count));
+  if (processes->rank() == 0 && !quiet) notify(plan.note);
   const std::string& output = plan.output;
   const auto started = std::chrono::steady_clock::now();
-  const EnsembleOutcome end = run_study(
-      plan.study,
-      {.replicas = plan.replicas, .threads = options.threads, .progress = options.show(), .force = plan.force}, output,
-      *processes);
+  const EnsembleOutcome end = run_study(plan.study, plan.options, output, *processes);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
   if (processes->rank() != 0) return end.status;
-  if (!options.quiet) notify(end.account);
+  if (!quiet) notify(end.account);
   notify(end.warning);
   if (end.status == Exit::interrupted || end.status == Exit::terminated) {
     notify(fmt::format(
         "interrupted: finished replicas are in {}.part; the same command continues from there, or `cradle resume {}`\n",
         output, output));
-  } else if (!options.quiet) {
+  } else if (!quiet) {
     fmt::print("{} replicas: {}\n", end.replicas, end.outcome);
     if (end.fresh > 0)
       fmt::print("{} of them now, {:.2f} s, {:.4g} replicas/s\nwrote {}\n", end.fresh, seconds,

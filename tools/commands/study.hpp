@@ -15,14 +15,13 @@ inline constexpr std::uint64_t most_replicas = std::uint64_t{1} << 53;
 
 struct StudyPlan {
   Study study;
-  ReplicaRange replicas;  // of every point
+  EnsembleOptions options;
   std::string output;
-  Force force = Force::no;
   std::string note = {};  // for the user
 };
 
 /// Runs the replicas of the plan that its output does not have yet. Under MPI every rank makes the plan; an error in it
 /// is reported once.
-Exit run_study_command(const RunningOptions& options, const std::function<StudyPlan()>& make_plan);
+Exit run_study_command(bool quiet, const std::function<StudyPlan()>& make_plan);
 
 }  // namespace cradle::tools

@@ -24,9 +24,8 @@ StudyPlan plan(const SweepArguments& options) {
   }
   if (options.sweep.replicas > 0) sweep.replicas = options.sweep.replicas;
   return {sweep_of(options.scene, options.all_overrides(), sweep),
-          {options.first, sweep.replicas},
+          {{options.first, sweep.replicas}, options.threads, options.show(), options.force()},
           options.output_or(scene.name + "-sweep.h5"),
-          options.force(),
           scene.remarks};
 }
 
@@ -36,7 +35,7 @@ void add_sweep(CommandLine& program) {
   Command command = program.add("sweep", "a scene at many points: one ensemble each, one file",
                                 "cradle sweep fig4 --vary law.restitution=0.9:0.999:10 --replicas 10");
   auto& options = command.runs<SweepArguments>(
-      [](const SweepArguments& given) { return run_study_command(given, [&] { return plan(given); }); });
+      [](const SweepArguments& given) { return run_study_command(given.quiet, [&] { return plan(given); }); });
   add_common_options(command, options);
   command.repeated("--vary", options.sweep.vary,
                    "or KEY=FROM:TO:COUNT:log, or KEY=VALUE,VALUE,...; of several, all combinations",

@@ -151,12 +151,7 @@ void RunFiles::resume(const std::optional<std::string>& until) {
     state_.reset();
     ++header_.identity;  // the checkpoint then belongs to another identity
   }
-  if (later) {
-    not_extended_ = lists_not_extended(scene_, Decimal(*until));
-    scene_ = extended(scene_, *until, path);
-    scene_.name = header_.name;
-    header_.scene = effective_toml(scene_);
-  }
+  if (later) extend(*until, path);
   records_ = state_ ? found.records : 0;
   std::uint64_t end = 0;
   const auto read = [&](const JournalWriter::Put& put) {
@@ -205,13 +200,17 @@ void RunFiles::resume_from_result(const std::optional<std::string>& until) {
   if (const std::uint64_t numbers = numbers_in(result.groups); state_ && numbers > most_in_memory)
     throw Error({file_}, "too large to be extended", fmt::format("{} numbers", numbers),
                 "run the scene with a later run.until", Exit::io);
-  not_extended_ = lists_not_extended(scene_, Decimal(*until));
-  scene_ = extended(scene_, *until, file_);
-  scene_.name = header_.name;
-  header_.scene = effective_toml(scene_);
+  extend(*until, file_);
   if (!state_) return;
   for (Group& rows : recorded(read_result(file_).groups, scene_)) waiting_.add(std::move(rows));
   from(state_->header());
+}
+
+void RunFiles::extend(const std::string& until, const std::string& path) {
+  not_extended_ = lists_not_extended(scene_, Decimal(until));
+  scene_ = extended(scene_, until, path);
+  scene_.name = header_.name;
+  header_.scene = effective_toml(scene_);
 }
 
 void RunFiles::from(const CheckpointHeader& found) {

@@ -69,6 +69,7 @@ class RunFiles : public Sink {
   static std::uint64_t drawn_number();
   void resume(const std::optional<std::string>& until);
   void resume_from_result(const std::optional<std::string>& until);
+  void extend(const std::string& until, const std::string& path);
   void from(const CheckpointHeader& found);
   bool checkpoint_due(Clock::time_point now) const;
   bool worth_extending(double seconds) const;

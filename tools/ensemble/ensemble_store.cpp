@@ -10,7 +10,6 @@
 #include "cradle/tools/result/reader.hpp"
 #include "cradle/tools/result/writer.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
-#include "cradle/tools/support/version.hpp"
 
 namespace cradle::tools {
 
@@ -232,15 +231,9 @@ std::string EnsembleStore::outcome() const {
 
 Result EnsembleStore::result() const {
   Result result;
-  result.attributes = {{"format_version", format_version},
-                       {"cradle_version", std::string(version)},
-                       {"kind", study_.kind},
-                       {"scene", effective_toml(study_.scene)},
-                       {"name", study_.scene.name},
-                       {"precision", precision_name(study_.scene.run)},
-                       {"outcome", outcome()},
-                       {"replicas", replicas()},
-                       {"identity", identity_}};
+  result.attributes = provenance(study_.scene, precision_name(study_.scene.run), outcome());
+  result.attributes.insert(result.attributes.begin() + 2, {"kind", study_.kind});
+  append(result.attributes, {{"replicas", replicas()}, {"identity", identity_}});
   if (study_.kind == "sweep") result.groups.push_back(sweep_summary(study_.scene.sweep, states_));
   for (const auto& state : states_)
     for (Group& group : state->groups()) result.groups.push_back(std::move(group));

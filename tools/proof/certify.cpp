@@ -127,12 +127,10 @@ Certified certify(const Scene& requested, const CertifyOptions& options) {
     Certificate certificate = observer->certificate();
     if (!certificate.doubt) certificate.doubt = observer->disagreement(outcome.result);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
-    const auto& samples = certificate.samples;
-    attempts.push_back({precision_name(scene.run), certificate.digits_text, samples.empty() ? 0 : samples.back().time,
-                        certificate.collisions, seconds, certificate.doubt ? doubt_text(*certificate.doubt) : ""});
+    const auto& doubt = certificate.doubt;
+    attempts.push_back({precision_name(scene.run), certificate.digits_text, seconds, doubt ? doubt_text(*doubt) : ""});
     const bool last = digits + 1 == options.digits.end();
     // Collisions that are wrong require more digits of the run, those that are open more digits of the balls.
-    const auto& doubt = certificate.doubt;
     const bool raised = doubt && doubt->refuted && raise(scene, of_balls);
     if (doubt && doubt->check == Check::agreement && last && !raised)
       throw Error(

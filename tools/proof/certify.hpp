@@ -16,12 +16,10 @@
 
 namespace cradle::tools {
 
-/// One try: how far it came.
+/// One try: how long it took, and where it ended.
 struct Attempt {
   std::string precision;  // of the run
   std::string digits;     // of the balls
-  double time = 0;        // proved until
-  std::uint64_t collisions = 0;
   double seconds = 0;
   std::string doubt;  // empty: none
 };

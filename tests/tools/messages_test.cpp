@@ -107,7 +107,7 @@ class Answers : public ProgramTest, public testing::WithParamInterface<Inputs> {
       }
       return "";
     } catch (const tools::Error& error) {
-      EXPECT_EQ(error.exit_code(), input.status) << error.what();
+      EXPECT_EQ(static_cast<int>(error.status), input.status) << error.what();
       return error.what();
     }
   }

@@ -40,7 +40,8 @@ Exit theory(const TheoryArguments& options) {
   fmt::print("\nforms: discrete: the exact recursion; continuous: a formula, the paper's corrected where it is "
              "misprinted{}.\n",
              has("cushion") ? "; cushion: an estimate, of particles between walls" : "");
-  if (has("printed")) fmt::print("Misprints: {} As printed: form `printed`, curves in --csv.\n", misprints(scene));
+  if (has("printed"))
+    fmt::print("Misprints: {} As printed: form `printed`, curves in --csv.\n", law_theory(scene).misprints);
   return Exit::done;
 }
 

@@ -74,8 +74,6 @@ class Error : public std::runtime_error {
 
   Exit status;
 
-  int exit_code() const { return static_cast<int>(status); }
-
  private:
   static std::string compose(const Place& place, std::string_view wrong, std::string_view found,
                              std::string_view advice) {

@@ -44,8 +44,6 @@ std::vector<Prediction> predictions(const Scene& scene) {
   return std::move(table).take();
 }
 
-std::string misprints(const Scene& scene) { return std::string(law_theory(scene).misprints); }
-
 std::string predictions_csv(const std::vector<Prediction>& table) {
   std::string csv = "quantity,equation,form,t,value\n";
   for (const auto& p : table) {

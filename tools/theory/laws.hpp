@@ -23,9 +23,6 @@ struct Prediction {
 /// Curves and numbers that apply to the scene; times are those of the scene. Empty if the paper predicts nothing.
 std::vector<Prediction> predictions(const Scene& scene);
 
-/// Which of the paper's formulas for this scene's law have misprints, in words; empty if none.
-std::string misprints(const Scene& scene);
-
 /// Long-format CSV: quantity,equation,form,t,value; t empty for single numbers.
 std::string predictions_csv(const std::vector<Prediction>& table);
 
@@ -59,7 +56,7 @@ struct LawTheory {
   LawType type = LawType::inelastic;
   void (*predict)(const Scene&, Predictions&) = nullptr;  // the paper's formulas; null if there are none
   void (*cost_of_rows)(const Scene&, Cost&) = nullptr;    // expected collisions of two equal rows; null if not known
-  std::string_view misprints = {};                        // of the paper's formulas for this law
+  const char* misprints = "";                             // of the paper's formulas for this law
 };
 /// The row of the scene's law; an empty one if it has none.
 const LawTheory& law_theory(const Scene& scene);

@@ -56,7 +56,7 @@ TEST(Scene, HasTheValuesOfTheTable) {
 TEST(Errors, FormAndStatus) {
   const Error error({"a.toml", 3, "run.until"}, "wrong type", "true", "give a number", Exit::io);
   EXPECT_STREQ(error.what(), "a.toml:3: run.until: wrong type (found true): give a number");
-  EXPECT_EQ(error.exit_code(), 4);
+  EXPECT_EQ(error.status, Exit::io);
   EXPECT_EQ((Place{"--set", 0, "run.until"}.prefix()), "--set run.until: ");
   EXPECT_EQ((Place{}.prefix()), "");
 }

@@ -176,10 +176,10 @@ TEST(StickyPredictions, SayNothingOfOtherStarts) {
 }
 
 TEST(Misprints, FitTheLaw) {
-  EXPECT_TRUE(has(misprints(read_scene("fig2")), "(7)"));
-  EXPECT_FALSE(has(misprints(read_scene("fig2")), "(17)"));
-  EXPECT_TRUE(has(misprints(read_scene("fig6")), "sqrt(2 E_loss/mu)"));
-  EXPECT_FALSE(has(misprints(read_scene("fig6")), "(7)"));
+  EXPECT_TRUE(has(law_theory(read_scene("fig2")).misprints, "(7)"));
+  EXPECT_FALSE(has(law_theory(read_scene("fig2")).misprints, "(17)"));
+  EXPECT_TRUE(has(law_theory(read_scene("fig6")).misprints, "sqrt(2 E_loss/mu)"));
+  EXPECT_FALSE(has(law_theory(read_scene("fig6")).misprints, "(7)"));
 }
 
 }  // namespace cradle::tools::table_test

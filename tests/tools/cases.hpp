@@ -28,7 +28,7 @@ struct ListedCase {
 // Of a file below tests/tools.
 inline std::vector<ListedCase> cases_in(const std::string& name) {
   std::map<std::string, Lines> texts;
-  for (const tools::BundledScene& scene : tools::bundled_scenes())
+  for (const tools::EmbeddedFile& scene : tools::bundled_scenes())
     texts["@" + std::string(scene.name)] = {std::string(scene.text)};
   std::istringstream file(contents(test::source_folder + "/tests/tools/" + name));
   std::vector<ListedCase> all;

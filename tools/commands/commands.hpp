@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -58,6 +59,9 @@ Exit run_command(RunFiles& files, const std::string& output, const RunningOption
 
 /// Writes what a command has made, then prints `text` and, unless it is to be quiet, the name of the file.
 void put_result(const Result& result, const std::string& output, const std::string& text, bool quiet);
+
+/// The Python package; names include the folders below tools/python.
+std::span<const EmbeddedFile> python_package();
 
 /// The commands: each adds itself. Help lists them in this order.
 using AddCommand = void(CommandLine& program);

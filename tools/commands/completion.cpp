@@ -62,7 +62,7 @@ std::vector<std::pair<std::string, std::string>> candidates(const std::vector<Co
       for (const std::string& name : option.names)
         if (!option.argument) all.emplace_back(name, option.help);
   } else if (before == "--from" || command->name == "scenes" || command->takes("SCENE")) {
-    for (const BundledScene& scene : bundled_scenes()) all.emplace_back(scene.name, "");
+    for (const EmbeddedFile& scene : bundled_scenes()) all.emplace_back(scene.name, "");
   } else if (before == "completion") {
     for (const char* shell : {"bash", "zsh", "fish"}) all.emplace_back(shell, "");
   }

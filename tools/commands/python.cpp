@@ -1,7 +1,5 @@
 // What the program does in Python: pictures and reports. The program contains the package tools/python/cradle, so both
 // work wherever the program is installed.
-#include "cradle/tools/commands/python.hpp"
-
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>

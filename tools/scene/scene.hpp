@@ -234,12 +234,12 @@ std::optional<std::pair<Decimal, Decimal>> extent(const Scene& scene);
 /// The first key in which two scenes differ, with both values; empty if there is none.
 std::string scene_difference(const Scene& found, const Scene& wanted);
 
-struct BundledScene {
-  std::string_view name;
-  std::string_view text;
+/// A file that the program carries, by embed.cmake.
+struct EmbeddedFile {
+  std::string_view name, text;
 };
 
 /// The files of tools/scenes, sorted by name.
-std::span<const BundledScene> bundled_scenes();
+std::span<const EmbeddedFile> bundled_scenes();
 
 }  // namespace cradle::tools

@@ -137,7 +137,7 @@ std::string similar_scene(const std::filesystem::path& path) {
   for (const auto& entry : std::filesystem::directory_iterator(folder, none))
     if (entry.path().extension() == ".toml") names.push_back((path.parent_path() / entry.path().filename()).string());
   std::ranges::sort(names);
-  for (const BundledScene& scene : bundled_scenes()) names.emplace_back(scene.name);
+  for (const EmbeddedFile& scene : bundled_scenes()) names.emplace_back(scene.name);
   const auto nearest = nearest_word(path.string(), names);
   return nearest.empty() ? "give the path of a scene file, or one of the names that `cradle scenes` lists"
                          : fmt::format("did you mean {}?", nearest);
@@ -204,7 +204,7 @@ Scene read_scene(const std::string& path_or_name, const std::vector<std::string>
                               path_or_name));
     return parse_scene(text, path_or_name, overrides);
   }
-  for (const BundledScene& scene : bundled_scenes())
+  for (const EmbeddedFile& scene : bundled_scenes())
     if (scene.name == path_or_name) return parse_scene(scene.text, path_or_name + ".toml", overrides);
   throw Error({path_or_name}, "no such scene", exists ? "a folder" : "neither a file nor a bundled scene",
               similar_scene(path_or_name), Exit::io);

@@ -105,7 +105,7 @@ TEST(Scene, LongTextsAreCutOffInMessages) {
 }
 
 TEST(EffectiveScene, ReadsBackAsTheSameScene) {
-  for (const BundledScene& bundled : bundled_scenes()) {
+  for (const EmbeddedFile& bundled : bundled_scenes()) {
     SCOPED_TRACE(bundled.name);
     expect_read_back(read_scene(std::string(bundled.name)));
   }
@@ -150,7 +150,7 @@ TEST(SceneKeys, AreAllDescribedWithTheirFacts) {
 
 TEST(BundledScenes, HaveTheNamesOfTheirFiles) {
   Strings names;
-  for (const BundledScene& bundled : bundled_scenes()) names.emplace_back(bundled.name);
+  for (const EmbeddedFile& bundled : bundled_scenes()) names.emplace_back(bundled.name);
   EXPECT_TRUE(std::ranges::is_sorted(names));
   for (const auto& name : names) EXPECT_EQ(read_scene(name).name, std::filesystem::path(name).filename());
   EXPECT_NE(std::ranges::find(names, "classics/blast"), names.end());

@@ -164,7 +164,7 @@ template <Real T> class RunStateIn final : public RunState {
   }
   std::optional<double> energy_deviation(double of) const override {
     const std::optional<T> off = run_.energy_deviation(time_);
-    if (!off || !is_positive(*off)) return {};
+    if (!off) return {};
     return to_double(T(*off / exactly<T>(of)));
   }
 

@@ -185,18 +185,21 @@ std::string exhausted_warning(const Number& time, std::uint64_t collisions, cons
 
 // About how many digits of the energy at the end are right. C collisions of N particles each round a speed by eps,
 // together by eps sqrt(1 + C/N), and change the energy by twice that. If the chain holds closing speeds, the error is
-// relative to the present ones; if it holds velocities, to those at the start. Where collisions make errors grow, only
-// an engine that watches them knows by how much. After an uncertain one no digit is right, unless nothing is changed.
-double energy_digits(const Scene& scene, const AnyEngine& engine, const RunState& now) {
+// relative to the present ones; if it holds velocities, to those at the start. Where collisions make errors grow, or a
+// threshold decides what happens, only an engine that watches them knows by how much: `grown` says that none has. After
+// an uncertain collision no digit is right, unless nothing is changed.
+double energy_digits(const Scene& scene, const AnyEngine& engine, const RunState& now, bool& grown) {
   const double at_start = now.energy_at_start().value, at_end = now.state().energy.value;
+  const std::optional<double> off = at_end > 0 ? now.energy_deviation(at_end) : 0;
+  grown = !off && (particles_merge(scene) || scene.walls.shaken() || scene.gravity.acceleration ||
+                   unequal_masses(scene) || scene.run.coordinates == Coordinates::absolute);
   if (engine.account().uncertain && at_start != at_end) return 0;
   const auto active = static_cast<double>(std::max<ParticleIndex>(engine.collided_particles(), 1));
   double error = 2 * std::sqrt(1 + static_cast<double>(engine.counts().collisions) / active);
   const bool velocities = scene.run.coordinates == Coordinates::absolute || particles_merge(scene);
   if (velocities && at_end > 0) error *= std::sqrt(std::max(1., at_start / at_end));
   const double digits = static_cast<double>(-std::log10(engine.epsilon())) - std::log10(error);
-  const std::optional<double> off = at_end > 0 ? now.energy_deviation(at_end) : std::nullopt;
-  return std::max(0., off ? std::min(digits, -std::log10(*off)) : digits);
+  return std::max(0., std::min(digits, -std::log10(off.value_or(0))));
 }
 
 // If rounding may move a collision across the end of a run, it may be the last one, which should not have been made, or
@@ -264,7 +267,7 @@ RunEnding::RunEnding(const Scene& scene, const AnyEngine& engine, const RunState
     : outcome(outcome_of(scene, engine, now, status)) {
   ReportedAccount account = engine.account();
   const auto found = status == Status::collapsed ? std::optional(engine.collapse()) : std::nullopt;
-  outcome.energy_digits = energy_digits(scene, engine, now);
+  outcome.energy_digits = energy_digits(scene, engine, now, outcome.may_have_grown);
   if (const auto particle = now.uncertain(); particle && !account.uncertain && status == Status::reached) {
     account.uncertain_end = true;
     account.first_uncertain = {now.time.meant, 0, *particle};

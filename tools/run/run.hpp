@@ -40,7 +40,8 @@ struct RunOutcome {
   std::optional<double> collapsed_at;        // the same, rounded
   std::uint64_t collisions = 0, merges = 0;  // at the end, like time and energy
   double time = 0, energy = 0;
-  double energy_digits = 10;                            // digits of the energy that rounding leaves right
+  double energy_digits = 10;                            // digits of the energy that rounding leaves right, ...
+  bool may_have_grown = false;                          // ... unless it has grown, which nothing has followed
   double seconds = 0;                                   // of computing
   std::vector<std::pair<std::string, double>> summary;  // numbers of the whole run, by name: columns of /replicas
 };

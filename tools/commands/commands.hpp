@@ -54,8 +54,9 @@ struct CommonOptions : RunningOptions {
 void add_common_options(Command& command, CommonOptions& options);
 
 /// What `run` and `resume` share: runs the scene of the files into `output`, which the caller has claimed, and reports
-/// how it ended.
-Exit run_command(RunFiles& files, const std::string& output, const RunningOptions& options, Interrupt& interrupt);
+/// how it ended. `announcement`: for the user, before the run.
+Exit run_command(RunFiles& files, const std::string& output, const RunningOptions& options, Interrupt& interrupt,
+                 const std::string& announcement = "");
 
 /// Writes what a command has made, then prints `text` and, unless it is to be quiet, the name of the file.
 void put_result(const Result& result, const std::string& output, const std::string& text, bool quiet);

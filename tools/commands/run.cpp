@@ -40,15 +40,16 @@ Exit run(const RunArguments& options) {
   const FileClaim claim(output);
   check_overwrite(output, "run", &scene, options.force());
   RunFiles files(output, scene, options.force());
-  if (!options.quiet) notify(expected_warning(scene));
-  return run_command(files, output, options, interrupt);
+  return run_command(files, output, options, interrupt, options.quiet ? "" : expected_warning(scene));
 }
 
 }  // namespace
 
-Exit run_command(RunFiles& files, const std::string& output, const RunningOptions& options, Interrupt& interrupt) {
+Exit run_command(RunFiles& files, const std::string& output, const RunningOptions& options, Interrupt& interrupt,
+                 const std::string& announcement) {
   const Threads threads(options.threads);
-  const RunOutcome end = run_scene(files.scene(), {options.show(), nullptr, &interrupt, workers(threads)}, files);
+  const RunOutcome end =
+      run_scene(files.scene(), {options.show(), nullptr, &interrupt, workers(threads), announcement}, files);
   const std::string text = summary(end, files.collisions_before());
   if (end.end == RunEnd::interrupted) {
     tools::notify(end.warning);

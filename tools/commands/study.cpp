@@ -7,6 +7,7 @@
 
 #include "cradle/tools/support/interrupt.hpp"
 #include "cradle/tools/support/notify.hpp"
+#include "cradle/tools/theory/cost.hpp"
 
 namespace cradle::tools {
 
@@ -18,6 +19,12 @@ Exit run_study_command(bool quiet, const std::function<StudyPlan()>& make_plan) 
   if (!processes->together([&] { plan = make_plan(); })) return Exit::done;
   if (processes->rank() == 0) notify(same_replicas_warning(plan.study, plan.options.replicas.count));
   if (processes->rank() == 0 && !quiet) notify(plan.note);
+  if (processes->rank() == 0 && !quiet)
+    for (const auto& [group, scene] : plan.study.points)
+      if (const Cost cost = expected_cost(scene); !cost.endless.empty() || cost.floor) {
+        notify(expected_warning(scene));
+        break;
+      }
   const std::string& output = plan.output;
   const auto started = std::chrono::steady_clock::now();
   const EnsembleOutcome end = run_study(plan.study, plan.options, output, *processes);

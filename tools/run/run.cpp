@@ -4,6 +4,7 @@
 #include "cradle/tools/run/clusters.hpp"
 #include "cradle/tools/run/scene_run.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
+#include "cradle/tools/support/notify.hpp"
 #include "cradle/tools/support/version.hpp"
 
 namespace cradle::tools {
@@ -53,6 +54,7 @@ void SceneRun::require_in_progress() const {
 RunOutcome run_scene(const Scene& scene, const RunOptions& options, Sink& sink) {
   if (scene.initial.type == InitialType::clusters) return check_built(scene), run_clusters(scene, options, sink);
   const std::unique_ptr<SceneRun> run = begin_run(scene, options, sink);
+  notify(options.announcement);
   run->advance(scene.run.until);
   return *run->over();
 }

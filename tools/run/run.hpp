@@ -27,6 +27,7 @@ struct RunOptions {
   RunObserver* observer = nullptr;  // is notified of every collision
   Interrupt* interrupt = nullptr;   // says whether to stop; heeded once there is something to keep
   Workers workers = {};             // for a run that is cut into segments
+  std::string announcement = {};    // for standard error, once it is known that the run can begin
   bool held = false;                // by a caller who may observe collisions, or ask for a number of them
   std::function<double(double)> restitution = {};  // of the closing speed, instead of the scene's law; in double only
 };

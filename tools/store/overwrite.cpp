@@ -12,15 +12,6 @@ namespace cradle::tools {
 
 namespace {
 
-// The words after `cradle` without the scene: a plain run has no attributes that say so.
-std::string command_of(const Result& result) {
-  if (const auto* command = find_attribute<std::string>(result.attributes, "command")) return *command;
-  if (const Group* words = result.find("words"))
-    if (const auto* command = find_attribute<std::string>(words->attributes, "command")) return *command;
-  if (const auto* kind = find_attribute<std::string>(result.attributes, "kind")) return *kind;
-  return "run";
-}
-
 std::string precision_words(const Run& run) {
   const std::string name = precision_name(run);
   const std::string digits = run.precision == Precision::mpfr ? fmt::format(" --set run.digits={}", run.digits) : "";
@@ -38,6 +29,14 @@ bool nothing_to_lose(const std::string& file) {
 }
 
 }  // namespace
+
+std::string command_of(const Result& result) {
+  if (const auto* command = find_attribute<std::string>(result.attributes, "command")) return *command;
+  if (const Group* words = result.find("words"))
+    if (const auto* command = find_attribute<std::string>(words->attributes, "command")) return *command;
+  if (const auto* kind = find_attribute<std::string>(result.attributes, "kind")) return *kind;
+  return "run";
+}
 
 void say_how_made(Result& result, const std::string& command, const Scene& requested) {
   const auto* precision = find_attribute<std::string>(result.attributes, "precision");

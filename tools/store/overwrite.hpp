@@ -17,6 +17,9 @@ enum class Force { no, yes };
 /// ("certify --digits 50"), and `requested` is the scene as it was given, whose precision the command may have raised.
 void say_how_made(Result& result, const std::string& command, const Scene& requested);
 
+/// The words after `cradle` that made a result, without the scene: a plain run has no attributes that say so.
+std::string command_of(const Result& result);
+
 /// Throws Error (Exit::bad_input) if `file` is there and holds anything but a result of this command and scene; without
 /// a scene the command says all.
 void check_overwrite(const std::string& file, const std::string& command, const Scene* scene, Force force);

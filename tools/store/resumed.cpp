@@ -176,8 +176,10 @@ void RunFiles::resume_from_result(const std::optional<std::string>& until) {
     throw Error({file_}, "nothing to continue from", "neither a result nor a journal", "run the scene", Exit::io);
   Result result = read_result(file_, Reading::ends);
   scene_ = scene_in(result.attributes, file_);
-  if (find_attribute<std::string>(result.attributes, "kind") != nullptr && until)
-    throw Error({"--until", 0, ""}, "an ensemble has no later end", *until, "give it a file of its own");
+  if (const std::string command = command_of(result); until && command != "run")
+    throw Error({"--until", 0, ""},
+                fmt::format("a result of {} has no later end", command.substr(0, command.find(' '))), *until,
+                "repeat that command with a later run.until and a file of its own (-o)");
   const auto& outcome = attribute<std::string>(result.attributes, "outcome", file_);
   if (!until || Decimal(*until) == scene_.run.until || outcome != end_row(RunEnd::reached).text) {
     over_ =

@@ -90,19 +90,18 @@ bool ends_unproved(const Scene& scene) {
          held > static_cast<std::uint64_t>(CollapseWatch<double>::few);
 }
 
-// A line, if a collapse of so many particles does not end: in these types numbers hardly leave their range.
+// A line, if a collapse does not end: in these types numbers hardly leave their range, and a cut-off of 0 ends none.
 std::string endless_collapse(const Scene& scene, double particles) {
   const bool wide = scene.run.precision == Precision::mpfr || scene.run.precision == Precision::cpp_bin_float;
-  const bool ends = scene.run.stop_gap || ends_unproved(scene) || scene.law.cutoff_exponent;
+  const bool past = scene.run.collapse == scene::CollapsePolicy::cutoff && scene.law.cutoff.value == 0;
+  const bool ends = !past && (scene.run.stop_gap || ends_unproved(scene) || !stops_at_collapse(scene));
   const auto onset = theory::collapse_onset_particles(scene.law.restitution.value);
   const bool collapses = unequal_masses(scene) || scene.walls.any() || particles >= onset.value_or(particles + 1);
-  if (!wide || ends || !onset || !collapses || particles < 4 || !stops_at_collapse(scene)) return "";
-  return fmt::format(
-      "in {} a run that comes to a collapse of more than three particles has no end: give run.stop_gap\n",
-      scalar_row(scene.run.precision).name);
+  if (!wide || ends || scene.law.cutoff_exponent || !onset || !collapses || particles < (past ? 3 : 4)) return "";
+  return fmt::format("in {} a run that comes to a collapse{} has no end: give {}\n",
+                     scalar_row(scene.run.precision).name, past ? "" : " of more than three particles",
+                     past ? "a law.cutoff, or run.collapse = \"stop\"" : "run.stop_gap");
 }
-
-double deviation(const std::optional<Decimal>& temperature) { return std::sqrt(temperature->value); }
 
 // Gases of equal particles at rest on the whole, on a ring or between elastic or heated walls at rest.
 void gas(const Scene& scene, Cost& cost) {
@@ -123,8 +122,8 @@ void gas(const Scene& scene, Cost& cost) {
   }
   const double eps = scene.law.restitution.value, flights = cooling.density * std::sqrt(cooling.variance);
   if (walls && (left.temperature || right.temperature)) {
-    const double s1 = deviation(left.temperature ? left.temperature : right.temperature),
-                 s2 = deviation(right.temperature ? right.temperature : left.temperature);
+    const double s1 = std::sqrt((left.temperature ? left : right).temperature->value),
+                 s2 = std::sqrt((right.temperature ? right : left).temperature->value);
     // Particles forget how they started within some passages.
     if (eps == 1 && time * std::min({s1, s2, std::sqrt(cooling.variance)}) > 10 * length)
       cost.collisions = theory::heated_collision_rate(particles, length, s1, s2) * time;
@@ -275,7 +274,8 @@ std::string expected_lines(const Scene& scene, const Cost& cost) {
 
 std::string expected_warning(const Scene& scene) {
   const Cost cost = expected_cost(scene);
-  return (cost.collapse || cost.clustering) && !particles_merge(scene) ? expected_lines(scene, cost) : cost.endless;
+  const bool said = cost.collapse || cost.clustering || (cost.floor && !stops_at_collapse(scene));
+  return said && !particles_merge(scene) ? expected_lines(scene, cost) : cost.endless;
 }
 
 Threading expected_threading(const Scene& scene, const Cost& cost, unsigned threads) {

@@ -32,7 +32,7 @@ std::string expected_lines(const Scene& scene, const Cost& cost);
 /// A number of so many digits without a power of ten below a million: 1000, not 1e+03.
 std::string about(double x, int digits = 2);
 
-/// These lines if the run ends at a collapse, goes past it or past clustering; else empty.
+/// These lines if the run ends at a collapse, goes past it or past clustering, or may have no end; else empty.
 std::string expected_warning(const Scene& scene);
 
 // Expected collisions of two equal rows, by law (laws.cpp).

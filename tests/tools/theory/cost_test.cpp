@@ -112,6 +112,21 @@ TEST(ExpectedCollisions, AreWithoutEndWhereFewParticlesCollapseInTypesWithoutRan
   }
   EXPECT_FALSE(has(warning("0.17", "", "4"), endless));
   EXPECT_FALSE(has(warning("0.17", "precision = 'mpfr', stop_gap = 1e-99, ", "4"), endless));
+  // A cut-off of 0 goes past the collapse of three, which is endless as well.
+  const auto past = [](const char* precision) {
+    return expected_warning(
+        read_scene("collapse3", {"run.collapse=cutoff", "run.stop_gap=", std::string("run.precision=") + precision}));
+  };
+  EXPECT_TRUE(has(past("mpfr"), "has no end: give a law.cutoff"));
+  EXPECT_EQ(past("double"), "");
+}
+
+TEST(ExpectedCollisions, OfAPileOnAnInelasticFloorMayBeVeryMany) {
+  const std::string pile =
+      "law = { type = 'inelastic', restitution = 0.5, cutoff = 1e-9 }\ngravity.acceleration = -1\nrun.until = 200\n"
+      "walls.left = { position = 0, restitution = 0.8 }\ninitial = { type = 'list', x = [1, 2], v = [0, 0.1] }\n";
+  EXPECT_TRUE(has(expected_warning(scene_of(pile)), "may be very many: with walls.left.rest_speed"));
+  EXPECT_EQ(expected_warning(parse_scene(pile, "pile.toml", {"walls.left.rest_speed=1e-3"})), "");
 }
 
 }  // namespace cradle::tools::cost_test

@@ -1,7 +1,7 @@
 // Masses that repeat, on rows, rings and in cold gases. Proves: particles have the masses of the pattern and their sums
 // are those particle by particle; a pattern of equal masses changes no bit; a ring has no momentum; runs in segments
 // have the bits of the plain loop. (Energy and momentum are kept, streamed is held and listed, at any cadence:
-// engine/same_bits_test.cpp. Gaps against positions: chains/twins_test.cpp.)
+// engine/same_bits_test.cpp. Gaps against positions: engine/properties_test.cpp.)
 #include <gtest/gtest.h>
 
 #include "cradle/tests/core/segmented.hpp"

@@ -1,7 +1,7 @@
 // Keyed random numbers. Proves: Philox4x32-10 gives the known answers of the Random123 distribution (kat_vectors;
 // Salmon et al., SC'11, doi 10.1145/2063384.2063405, who tested that its numbers are uniform and unrelated), with the
-// seed as its key, replica and index as its counter; uniform_integer is within its bounds and as equal as it says; rows
-// start from the same places in every scalar type and representation.
+// seed as its key, replica and index as its counter; uniform_integer is within its bounds and as equal as it says.
+// (States made of them, in every scalar type: precision/random_states_test.cpp.)
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,8 +9,7 @@
 #include <ranges>
 
 #include "cradle/core/base/counter_rng.hpp"
-#include "cradle/tests/core/fixtures.hpp"
-#include "cradle/tests/core/rational.hpp"
+#include "cradle/core/initial/rows.hpp"
 
 namespace cradle::test::counter_rng_test {
 
@@ -58,33 +57,6 @@ TEST(CounterRng, UniformIntegerIsAsEqualAsItSays) {
       ASSERT_NEAR(static_cast<double>(count), share, std::ldexp(1, 32)) << value << " of " << bound;
     }
   }
-}
-
-TEST(CounterRng, RowsStartFromTheSamePlacesInEveryType) {
-  const auto rows = [](auto one) {
-    using T = decltype(one);
-    return std::make_shared<Rows<T>>(Row<T>{30, T(1), T(1) / T(2)}, Row<T>{40, T(-1), T(3)},
-                                     CentralParticle<T>{T(5), T(0)}, uniform_displacement(0.05, 42, 7));
-  };
-  const auto rounded = rows(1.);
-  const auto exact = rows(Rational(1));
-  const PositionChain<double> positions(rounded, 0);
-  const GapChain<double, IndividualMasses<double>> streamed(rounded, 0), held(rounded, 0, true);
-  const auto all = held.configuration(0), placed = positions.configuration(0);
-  EXPECT_EQ(streamed.configuration(0).gap.size(), 2U) << "only the gaps next to the centre";
-  bool displaced = false;
-  for (ParticleIndex b = 0; b < rounded->count(); ++b) {
-    const auto j = static_cast<std::size_t>(b);
-    // Multiples of 2^-29 and 3/2^28 below 2^7: exact in double.
-    ASSERT_EQ(Rational(rounded->position(b)), exact->position(b)) << b;
-    ASSERT_EQ(placed.x[j], rounded->position(b)) << b;
-    if (b + 1 == rounded->count()) break;
-    ASSERT_EQ(Rational(rounded->gap(b)), exact->gap(b)) << b;
-    ASSERT_EQ(exact->gap(b), exact->position(b + 1) - exact->position(b)) << b;
-    ASSERT_EQ(all.gap[j], rounded->gap(b)) << b;
-    displaced = displaced || (b < 29 && rounded->gap(b) != 0.5);
-  }
-  EXPECT_TRUE(displaced);
 }
 
 TEST(CounterRng, DisplacementsStayWithinThePerturbation) {

@@ -73,19 +73,6 @@ TEST(Zone, WidthOfALinearFall) {
   EXPECT_DOUBLE_EQ(zone.mass_density()[0], 4 * 51);
 }
 
-TEST(Zone, ParticleJustBelowTheEndIsInTheLastBin) {
-  const List<double> nobody({-100, 100}, {0, 0});
-  for (const double reach : {1., 4., 0.7, 561.862178}) {
-    for (std::size_t bins = 4; bins <= 300; ++bins) {
-      ZoneAverage zone(reach, bins, 16, 1);
-      zone.find(placed({-reach, std::nextafter(reach, 0.)}, {1, 1}), nobody, 0.0);
-      zone.add_found();
-      ASSERT_GT(zone.mass_density().front(), 0) << reach << " in " << bins;
-      ASSERT_GT(zone.mass_density().back(), 0) << reach << " in " << bins;
-    }
-  }
-}
-
 // Rows that nothing slows down have no zone; and particles that no front has reached are seen.
 TEST(Zone, NoWidthWithoutAFall) {
   const auto rows = rshock<double>(200);

@@ -17,8 +17,6 @@
 
 namespace cradle::test {
 
-using FallingGaps = GapChain<double, IndividualMasses<double>>;
-using FallingPositions = PositionChain<double>;
 using Shaking = std::shared_ptr<const WallMotion<double>>;
 
 template <class T>
@@ -42,15 +40,6 @@ inline Wall<double> wall(double position, Shaking motion, double restitution = 1
           .rest_speed = rest_speed};
 }
 inline constexpr Shape shapes[] = {Shape::sawtooth, Shape::parabola, Shape::sine};
-
-template <class Law>
-Simulation<double, Law, FallingGaps> falling(const Scene<double>& particles, const Law& law, double start = 0) {
-  return {law, FallingGaps(particles, start)};
-}
-template <class Law>
-Simulation<double, Law, FallingPositions> falling_positions(const Scene<double>& particles, const Law& law) {
-  return {law, FallingPositions(particles, 0.)};
-}
 
 // What is left of the energy beyond what walls gave and what was lost, at most over the sizes of these.
 template <class Run> double unaccounted(const Run& run, const Particles<double>& particles, double t) {

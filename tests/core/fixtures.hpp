@@ -24,7 +24,6 @@ namespace cradle::test {
 
 template <class T> using Scene = std::shared_ptr<const Particles<T>>;
 template <class T> using GapRun = Simulation<T, Inelastic<T>, GapChain<T>>;
-template <class T> using MassRun = Simulation<T, Inelastic<T>, GapChain<T, IndividualMasses<T>>>;
 template <class T> using PositionRun = Simulation<T, Inelastic<T>, PositionChain<T>>;
 
 inline std::uint64_t hash(ParticleIndex i) { return splitmix64(static_cast<std::uint64_t>(i) + 0x9E3779B97F4A7C15); }
@@ -139,22 +138,21 @@ struct Options {
   int least_queue_bits = 3;
 };
 
-template <class T>
-GapRun<T> gap_run(const Scene<T>& particles, const Inelastic<T>& law, Policy<T> policy = {}, const T& start = T(0),
-                  Options options = {}) {
+template <class T, class Law>
+Simulation<T, Law, GapChain<T>> gap_run(const Scene<T>& particles, const Law& law, Policy<T> policy = {},
+                                        const T& start = T(0), Options options = {}) {
   return {law, GapChain<T>(particles, start, options.hold_all), std::move(policy), options.least_queue_bits};
 }
 
-template <class T>
-MassRun<T> mass_run(const Scene<T>& particles, const Inelastic<T>& law, Policy<T> policy = {}, const T& start = T(0),
-                    Options options = {}) {
-  return {law, GapChain<T, IndividualMasses<T>>(particles, start, options.hold_all), std::move(policy),
-          options.least_queue_bits};
+template <class T, class Law>
+Simulation<T, Law, GapChain<T, IndividualMasses<T>>> mass_run(const Scene<T>& particles, const Law& law,
+                                                              Policy<T> policy = {}, const T& start = T(0)) {
+  return {law, GapChain<T, IndividualMasses<T>>(particles, start), std::move(policy)};
 }
 
-template <class T>
-PositionRun<T> position_run(const Scene<T>& particles, const Inelastic<T>& law, Policy<T> policy = {},
-                            const T& start = T(0)) {
+template <class T, class Law>
+Simulation<T, Law, PositionChain<T>> position_run(const Scene<T>& particles, const Law& law, Policy<T> policy = {},
+                                                  const T& start = T(0)) {
   return {law, PositionChain<T>(particles, start), std::move(policy)};
 }
 

@@ -49,7 +49,9 @@ inline bool holds(const B& x, const bin_float& number) {
 struct DrawnWall {
   int gap = 0, speed = 0;  // to the outermost particle; towards the particles
   const char* restitution = "1";
-  double temperature = 0;  // above 0: thermal
+  double temperature = 0;                    // above 0: thermal
+  std::optional<Shaking<int>> shaking = {};  // in units of 1/64
+  int rest_speed = 0;
 };
 
 // Multiples of 1/64, so that all types have the same particles; coefficients as decimals. Only one of the laws is
@@ -64,7 +66,10 @@ struct Drawn {
   int acceleration = 0;
 
   bool merges() const { return sticky || loss > 0; }
-  bool has_roots() const { return acceleration != 0 || loss > 0 || exponent != nullptr; }
+  bool has_roots() const {
+    const auto shaken = [](const auto& wall) { return wall && wall->shaking; };
+    return acceleration != 0 || loss > 0 || exponent != nullptr || shaken(walls[0]) || shaken(walls[1]);
+  }
 };
 
 inline Drawn draw(std::uint64_t number) {
@@ -145,9 +150,50 @@ inline Drawn draw_falling(std::uint64_t number) {
   return d;
 }
 
+// So that the wall is nowhere beyond the outermost particle at the start.
+inline void shake(DrawnWall& wall, std::uint64_t number, std::uint64_t side) {
+  const auto below = [&](std::uint64_t index, int bound) {
+    return static_cast<int>(random_bits(14, number, 8 * side + index) % static_cast<std::uint64_t>(bound));
+  };
+  wall.shaking = {static_cast<Shape>(below(0, 3)), 1 + below(1, 32), 32 + below(2, 256), below(3, 256)};
+  wall.gap += wall.shaking->amplitude;
+  wall.temperature = 0;
+}
+// The same between walls of which one or both are shaken, a quarter of them without gravity.
+inline Drawn draw_shaken(std::uint64_t number) {
+  Drawn d = draw_falling(number);
+  if (number % 4 == 0) d.acceleration = 0;
+  for (std::size_t side = 0; side < 2; ++side)
+    if (d.walls[side] && (number % 2 == side || !d.walls[1 - side])) shake(*d.walls[side], number, side);
+  return d;
+}
+// Particles that fall on a floor that holds them, shaken in three of four scenes; below a ceiling in a third of them,
+// if there are several.
+inline Drawn draw_resting(std::uint64_t number) {
+  Drawn d = draw(number);
+  const auto below = [&](std::uint64_t index, int bound) {
+    return static_cast<int>(random_bits(15, number, index) % static_cast<std::uint64_t>(bound));
+  };
+  constexpr const char *soft[] = {"0.75", "0.5", "0.9", "0.6"}, *floors[] = {"0.25", "0.5", "0.125"};
+  d.restitution = soft[below(0, 4)], d.length = 0;
+  const auto few = static_cast<std::size_t>(1 + below(8, 3));
+  if (number / 2 % 2 == 0) d.gaps.resize(few), d.velocities.resize(few), d.masses.resize(few);
+  for (int& gap : d.gaps) gap = 1 + gap / 4;
+  for (int& velocity : d.velocities) velocity /= 4;
+  const std::size_t side = number % 2;
+  d.acceleration = (side == 0 ? -1 : 1) * (64 + below(1, 128));
+  DrawnWall floor{1 + below(2, 64), below(3, 3) == 0 ? below(4, 16) - 8 : 0, floors[below(5, 3)]};
+  floor.rest_speed = 16 + below(6, 64);
+  if (number % 4 > 0) shake(floor, number, 2), floor.shaking->frequency += 128;
+  d.walls[side] = floor;
+  if (number % 3 == 0 && d.gaps.size() > 1) d.walls[1 - side] = DrawnWall{64 + below(7, 64), -floor.speed, "0.75"};
+  return d;
+}
+
 // What happens in all scenes of a family.
 struct Totals {
-  std::uint64_t runs = 0, collisions = 0, merges = 0, below_cutoff = 0, on_walls = 0, at_ceilings = 0, on_thermal = 0;
+  std::uint64_t runs = 0, collisions = 0, merges = 0, below_cutoff = 0, on_walls = 0, at_ceilings = 0, on_thermal = 0,
+                rested = 0, let_go = 0;
   void expect_at_least(const Totals& least) const {
     EXPECT_GE(runs, least.runs);
     EXPECT_GE(collisions, least.collisions);
@@ -156,6 +202,8 @@ struct Totals {
     EXPECT_GE(on_walls, least.on_walls);
     EXPECT_GE(at_ceilings, least.at_ceilings);
     EXPECT_GE(on_thermal, least.on_thermal);
+    EXPECT_GE(rested, least.rested);
+    EXPECT_GE(let_go, least.let_go);
   }
 };
 // Scenes of one kind: how many are drawn, and what happens in them at least.
@@ -196,6 +244,9 @@ template <class T> Gas<T> gas_of(const Drawn& d) {
     if (!d.walls[side]) continue;
     const double temperature = d.walls[side]->temperature;
     gas.walls[side] = {unit(place_of(d, side)), unit(velocity_of(d, side)), decimal<T>(d.walls[side]->restitution)};
+    gas.walls[side]->rest_speed = unit(d.walls[side]->rest_speed);
+    if (const auto& s = d.walls[side]->shaking)
+      gas.walls[side]->shaking = {s->shape, unit(s->amplitude), unit(s->frequency), unit(s->phase)};
     if (temperature > 0)
       gas.walls[side]->random_speed = [=](std::uint64_t collision, const T& mass) {
         return T(thermal_speed(wall_seed, 0, static_cast<End>(side), collision) *
@@ -222,14 +273,20 @@ template <class T> std::shared_ptr<const Particles<T>> particles_of(const Drawn&
   auto particles = std::make_shared<List<T>>(x, v, m, unit(d.length));
   if (!d.walls[0] && !d.walls[1] && d.acceleration == 0) return particles;
   std::array<std::optional<Wall<T>>, 2> walls;
-  for (std::size_t side = 0; side < 2; ++side)
-    if (d.walls[side])
-      walls[side] = Wall<T>{unit(place_of(d, side)),
-                            unit(velocity_of(d, side)),
-                            coefficient<T>(d.walls[side]->restitution),
-                            d.walls[side]->temperature,
-                            wall_seed,
-                            0};
+  for (std::size_t side = 0; side < 2; ++side) {
+    if (!d.walls[side]) continue;
+    const DrawnWall& drawn = *d.walls[side];
+    walls[side] = Wall<T>{.position = unit(place_of(d, side)),
+                          .speed = unit(velocity_of(d, side)),
+                          .restitution = coefficient<T>(drawn.restitution),
+                          .temperature = drawn.temperature,
+                          .seed = wall_seed,
+                          .rest_speed = unit(drawn.rest_speed)};
+    if constexpr (!std::same_as<T, Rational> && !std::same_as<T, B>)
+      if (const auto& s = drawn.shaking)
+        walls[side]->motion =
+            std::make_shared<WallMotion<T>>(s->shape, unit(s->amplitude), unit(s->frequency), unit(s->phase));
+  }
   return std::make_shared<Walled<T>>(particles, walls[0], walls[1], unit(d.acceleration));
 }
 

@@ -2,7 +2,6 @@
 // later than they do, and at the speed that they have then.
 #include <gtest/gtest.h>
 
-#include <boost/math/constants/constants.hpp>
 #include <cmath>
 #include <cstdint>
 #include <optional>
@@ -11,6 +10,7 @@
 #include "cradle/core/laws/shaken_approach.hpp"
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/precision/every_scalar.hpp"
+#include "cradle/tests/precision/shaking.hpp"
 
 namespace cradle::test::shaken_gaps_in_types_test {
 
@@ -19,46 +19,23 @@ template <class T> Reference exact(const T& x) { return in_100_digits(x); }
 
 // A gap by numbers of the type N, double or the reference: value and first two derivatives.
 template <class N> struct Curve {
-  Shape shape;
-  N gap, closing, pull, amplitude, frequency, phase, since;
-  N pi = boost::math::constants::pi<N>();
+  Shaking<N> wall;
+  N gap, closing, pull, since;
 
-  N turns(const N& t) const {
-    using std::floor;
-    const N y = (frequency * (since + t) + phase) / (2 * pi);
-    return y - floor(y + N(0.5));
-  }
-  N place(const N& y) const {
-    using std::abs, std::sin;
-    if (shape == Shape::sine) return amplitude * sin(2 * pi * y);
-    return shape == Shape::sawtooth ? N(2 * amplitude * y) : N(16 * amplitude * y * (N(0.5) - abs(y)));
-  }
-  N speed(const N& y) const {
-    using std::abs, std::cos;
-    if (shape == Shape::sine) return amplitude * frequency * cos(2 * pi * y);
-    const N slope = amplitude * frequency / pi;
-    return shape == Shape::sawtooth ? slope : N(4 * slope * (1 - 4 * abs(y)));
-  }
-  N acceleration(const N& y) const {
-    if (shape == Shape::sine) return -frequency * frequency * place(y);
-    if (shape == Shape::sawtooth) return N(0);
-    const N size = 8 * amplitude * frequency * frequency / (pi * pi);
-    return y < 0 ? size : N(-size);
-  }
+  N turns(const N& t) const { return wall.turns(since + t); }
   N at(const N& t) const {
     const N start = turns(N(0));
-    return gap - (closing - speed(start)) * t - pull * t * t / 2 - (place(turns(t)) - place(start));
+    return gap - (closing - wall.speed(start)) * t - pull * t * t / 2 - (wall.place(turns(t)) - wall.place(start));
   }
-  N rate(const N& t) const { return -(closing - speed(turns(N(0)))) - pull * t - speed(turns(t)); }
-  N bend(const N& t) const { return -pull - acceleration(turns(t)); }
+  N rate(const N& t) const { return -(closing - wall.speed(turns(N(0)))) - pull * t - wall.speed(turns(t)); }
+  N bend(const N& t) const { return -pull - wall.acceleration(turns(t)); }
 };
 
 // The times of the local minima of a gap until `end`, in double: between two samples, and on teeth at their tips.
 std::vector<double> minima(const Curve<double>& c, double end) {
-  const double step = 2 * c.pi / c.frequency / 48;
+  const double period = c.wall.period(), step = period / 48;
   std::vector<double> found;
-  if (c.shape == Shape::sawtooth) {
-    const double period = 2 * c.pi / c.frequency;
+  if (c.wall.shape == Shape::sawtooth) {
     for (double t = (0.5 - c.turns(0)) * period; t < end; t += period) found.push_back(t);
     return found;
   }
@@ -73,18 +50,18 @@ std::vector<double> minima(const Curve<double>& c, double end) {
 // The same in 100 digits, by Newton's steps; at the tip of a tooth the time of the jump.
 Reference sharpened(const Curve<Reference>& c, double minimum) {
   Reference t(minimum);
-  if (c.shape == Shape::sawtooth) {
+  if (c.wall.shape == Shape::sawtooth) {
     Reference y = c.turns(t);
     if (y > 0) y -= 1;
-    return t - (y + Reference(0.5)) * 2 * c.pi / c.frequency;
+    return t - (y + Reference(0.5)) * c.wall.period();
   }
   for (int k = 0; k < 4; ++k)
     if (const Reference bend = c.bend(t); bend > 0) t -= c.rate(t) / bend;
   return t;
 }
 Reference at_minimum(const Curve<Reference>& c, const Reference& t) {
-  if (c.shape != Shape::sawtooth) return c.at(t);
-  return c.at(t) - (c.turns(t) < 0 ? 2 * c.amplitude : Reference(0));  // just before the jump
+  if (c.wall.shape != Shape::sawtooth) return c.at(t);
+  return c.at(t) - (c.turns(t) < 0 ? 2 * c.wall.amplitude : Reference(0));  // just before the jump
 }
 
 class Draws {
@@ -105,16 +82,16 @@ template <class T> void expect_never_late(int count) {
   const Reference u = exact(T(std::numeric_limits<T>::epsilon())) / 2;
   std::uint64_t met = 0, never = 0, grazing = 0, grazed = 0;
   for (int k = 0; k < count; ++k) {
-    Curve<double> c{static_cast<Shape>(k % 3), 0,           0, 0, draw.octaves(-6, 2), draw.octaves(-2, 4),
-                    12 * draw() - 6,           100 * draw()};
-    const double speed = c.amplitude * c.frequency;
-    c.pull = draw() < 0.25 ? 0 : 2 * (draw() - 0.4) * speed * c.frequency * (draw() < 0.1 ? 0.01 : 1);
+    const auto shape = static_cast<Shape>(k % 3);
+    const double amplitude = draw.octaves(-6, 2), frequency = draw.octaves(-2, 4), phase = 12 * draw() - 6;
+    Curve<double> c{{shape, amplitude, frequency, phase}, 0, 0, 0, 100 * draw()};
+    const double speed = amplitude * frequency, period = c.wall.period();
+    c.pull = draw() < 0.25 ? 0 : 2 * (draw() - 0.4) * speed * frequency * (draw() < 0.1 ? 0.01 : 1);
     c.closing = (4 * draw() - 2) * speed;
-    c.gap = draw() < 0.3 ? 0 : c.amplitude * draw.octaves(-6, 2);
+    c.gap = draw() < 0.3 ? 0 : amplitude * draw.octaves(-6, 2);
     if (c.gap == 0) c.closing = -std::abs(c.closing);
-    Curve<Reference> wide{c.shape, c.gap, c.closing, c.pull, c.amplitude, c.frequency, c.phase, c.since};
+    Curve<Reference> wide{{shape, amplitude, frequency, phase}, c.gap, c.closing, c.pull, c.since};
     T gap = exactly<T>(c.gap);
-    const double period = 2 * c.pi / c.frequency;
     const bool graze = k % 9 > 5;
     if (graze) {
       std::optional<Reference> deepest;
@@ -128,12 +105,12 @@ template <class T> void expect_never_late(int count) {
       wide.gap = exact(gap), c.gap = to_double(gap);
       ++grazing;
     }
-    const WallMotion<T> motion(c.shape, exactly<T>(c.amplitude), exactly<T>(c.frequency), exactly<T>(c.phase));
+    const WallMotion<T> motion(shape, exactly<T>(amplitude), exactly<T>(frequency), exactly<T>(phase));
     const ShakenApproach<T> approach(gap, exactly<T>(c.closing), exactly<T>(c.pull), splitter<T>(), motion,
                                      motion.moment({exactly<T>(c.since), T(0)}));
     const auto meeting = approach.meeting();
     const Reference end = meeting ? exact(meeting->in) : Reference(40 * period);
-    const Reference sizes = wide.gap + c.amplitude + (abs(wide.closing) + speed) * end + abs(wide.pull) * end * end / 2;
+    const Reference sizes = wide.gap + amplitude + (abs(wide.closing) + speed) * end + abs(wide.pull) * end * end / 2;
     const Reference at_end = abs(wide.closing) + speed + abs(wide.pull) * end;
     const Reference tolerance = (RoundsToNearest<T> ? 64 : 512) * u * (sizes + at_end * (c.since + end));
     if (meeting) {
@@ -141,7 +118,7 @@ template <class T> void expect_never_late(int count) {
       grazed += graze;
       ASSERT_GE(meeting->speed, T(0)) << k;
       ASSERT_LE(abs(wide.at(end)), tolerance) << k << ' ' << static_cast<double>(end);
-      const Reference then = exact(meeting->speed), bend = abs(wide.pull) + speed * c.frequency;
+      const Reference then = exact(meeting->speed), bend = abs(wide.pull) + speed * frequency;
       if (then * then > 1000 * bend * tolerance) {  // not a touch that rounding decides
         ASSERT_LE(abs(then + wide.rate(end)), (RoundsToNearest<T> ? 64 : 512) * u * (at_end + bend * (c.since + end)))
             << k << ' ' << static_cast<double>(then);

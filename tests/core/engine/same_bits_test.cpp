@@ -72,12 +72,11 @@ template <class Property> void for_each_of_rows(const Property& property) {
                          400, {.collisions = 1000, .merges = 1}));
   property(gas<Gaps>("rows beside a piston", between(0, uniform_rows(400), Wall<double>{-205., .8}), Dry(0.99, 0.1), 20,
                      120, {.collisions = 1001}));
-  property(gas<FallingGaps>("falling rows", between(-0.01, uniform_rows(400), Wall<double>{-205., 0.25, .8}),
-                            Dry(0.99, 0.1), 20, 120, {.collisions = 1001}));
+  property(gas<Masses>("falling rows", between(-0.01, uniform_rows(400), Wall<double>{-205., 0.25, .8}), Dry(0.99, 0.1),
+                       20, 120, {.collisions = 1001}));
   for (const Shaking& motion : {Shaking(), shaken(Shape::sine, 0.25, 0.2), shaken(Shape::sawtooth, 0.05)})
-    property(gas<FallingGaps>("rows that come to rest on a floor",
-                              between(-0.5, lattice_rows(30), wall(-16, motion, 0.25, 0, 0.25)), Dry(0.75, 0.01), 10,
-                              40));
+    property(gas<Masses>("rows that come to rest on a floor",
+                         between(-0.5, lattice_rows(30), wall(-16, motion, 0.25, 0, 0.25)), Dry(0.75, 0.01), 10, 40));
 }
 
 // Particles in random places, as far from each other as those of a Poisson process, whose density may fall.
@@ -128,22 +127,21 @@ template <class Property> void for_each_gas(const Property& property) {
   property(gas<Gaps>("between walls", walls, Dry(0.97, 1e-4), 0.37, 60));
   property(gas<Positions>("between walls in positions", walls, Dry(0.97, 1e-4), 0.37, 60));
   const auto falls = between(-0.25, rmix<double>(40), thermal(-1, 0.5), Wall<double>{41., -0.02, .9});
-  property(gas<FallingGaps>("falling", falls, Dry(0.97, 1e-3), 0.37, 60, {.collisions = 301}));
-  property(gas<FallingPositions>("falling in positions", falls, Dry(0.97, 1e-3), 0.37, 60, {.collisions = 301}));
-  property(gas<FallingGaps>("falling with a contact time", falls, ContactTime<double>(Dry(0.97, 1e-3), 1e-3), 0.37, 60,
-                            {.collisions = 301}));
+  property(gas<Masses>("falling", falls, Dry(0.97, 1e-3), 0.37, 60, {.collisions = 301}));
+  property(gas<Positions>("falling in positions", falls, Dry(0.97, 1e-3), 0.37, 60, {.collisions = 301}));
+  property(gas<Masses>("falling with a contact time", falls, ContactTime<double>(Dry(0.97, 1e-3), 1e-3), 0.37, 60,
+                       {.collisions = 301}));
   for (const Shape shape : shapes) {
     const auto between_shaken =
         between(-0.25, rmix<double>(20), wall(-1, shaken(shape, 0.25, 0.3), 0.9), wall(21, shaken(shape, 0.5, 0, 2)));
-    property(gas<FallingGaps>("between shaken walls", between_shaken, Dry(0.97, 1e-3), 0.37, 20));
-    property(gas<FallingPositions>("between shaken walls, in positions", between_shaken, Dry(0.97, 1e-3), 0.37, 20));
+    property(gas<Masses>("between shaken walls", between_shaken, Dry(0.97, 1e-3), 0.37, 20));
+    property(gas<Positions>("between shaken walls, in positions", between_shaken, Dry(0.97, 1e-3), 0.37, 20));
   }
   for (const Shaking& motion : {Shaking(), shaken(Shape::sine, 0.25, 0.2), shaken(Shape::sawtooth, 0.05)})
-    property(gas<FallingGaps>(
+    property(gas<Masses>(
         "a pile", between(-1, list<double>({0.3, 0.9, 1.2, 1.7}, {0.5, 0, -0.25, 0}), wall(0, motion, 0.25, 0, 0.1)),
         Dry(0.75), 0.37, 8, {.collisions = 10}));
-  property(
-      gas<FallingGaps>("a ball that comes to rest",
+  property(gas<Masses>("a ball that comes to rest",
                        between(-1, list<double>({0.3}, {0}), wall(0, shaken(Shape::sine, 0.2, 0.2), 0.25, 0, 0.05)),
                        Dry(1), 0.73, 12, {.collisions = 1}));
 }

@@ -1,6 +1,6 @@
 // Gravity: one ball against closed forms (its bounces to the last bit: precision/gravity_test.cpp); columns in free
-// fall, which are those without gravity to the last bit; frames, mirrors and coordinates that must agree; the account
-// of energy; a gas over a thermal floor; what is refused.
+// fall, which are those without gravity to the last bit; frames and mirrors; the account of energy; a gas over a
+// thermal floor; what is refused. (In gaps and positions against a gas in 100 digits: precision/exact_gas_test.cpp.)
 
 #include <algorithm>
 #include <cmath>
@@ -22,7 +22,7 @@ const Scene<double> soft_floor = between(-2, list<double>({1}, {0}), Wall<double
 
 // With the restitution 1/2 it meets the floor at 3 - 2^(1 - n): in double exactly, while these times are doubles.
 TEST(Gravity, AnInelasticBallCollapsesOnTheFloor) {
-  auto run = falling(soft_floor, Inelastic<double>(1));
+  auto run = mass_run(soft_floor, Inelastic<double>(1));
   std::vector<double> times, speeds;
   const auto status = run.advance(
       4., [&](const Collision<double>& c) { times.push_back(c.time.value()), speeds.push_back(c.closing_speed); });
@@ -60,18 +60,18 @@ TEST(Gravity, ACutOffEndsTheCollapseOnTheFloor) {
     EXPECT_GT(run.counts().below_cutoff, 800U);
     EXPECT_EQ(run.counts().collisions - run.counts().below_cutoff, 8U);
   };
-  check(falling(soft_floor, Inelastic<double>(1, 0.01)));
-  check(falling_positions(soft_floor, Inelastic<double>(1, 0.01)));
-  check(falling(soft_floor, SpeedDependent<double>(0.9, 0.01, 2)));
+  check(mass_run(soft_floor, Inelastic<double>(1, 0.01)));
+  check(position_run(soft_floor, Inelastic<double>(1, 0.01)));
+  check(mass_run(soft_floor, SpeedDependent<double>(0.9, 0.01, 2)));
   // A contact time: the first collisions that follow within it are elastic.
-  auto brief = falling(soft_floor, ContactTime<double>(Inelastic<double>(1), 0.1));
+  auto brief = mass_run(soft_floor, ContactTime<double>(Inelastic<double>(1), 0.1));
   EXPECT_EQ(brief.advance(10), Status::reached);
   // Flights of 1, 1/2, ..., 1/16 end inelastically: that of 1/16 is shorter than the contact time.
   EXPECT_EQ(brief.energy_lost(), 2 - std::ldexp(1, -9));
   EXPECT_GT(brief.counts().below_cutoff, 100U);
   EXPECT_EQ(brief.counts().collisions - brief.counts().below_cutoff, 5U);
   // A thermal floor is never elastic.
-  auto warm = falling(between(-2, list<double>({1}, {0}), thermal(0, 1)), Inelastic<double>(1, 1e9));
+  auto warm = mass_run(between(-2, list<double>({1}, {0}), thermal(0, 1)), Inelastic<double>(1, 1e9));
   EXPECT_EQ(warm.advance(10), Status::reached);
   EXPECT_GT(warm.counts().collisions, 1U);
   EXPECT_EQ(warm.counts().below_cutoff, 0U);
@@ -85,7 +85,7 @@ TEST(Gravity, AColumnInFreeFallIsTheSame) {
     auto at_rest = mass_run<double>(particles, law);
     auto identical_masses = gap_run<double>(particles, law);
     const auto falls = between(a, particles);
-    auto fallen = falling(falls, law);
+    auto fallen = mass_run(falls, law);
     for (const double t : {until / 3, until / 2, until}) {
       at_rest.advance(t), fallen.advance(t), identical_masses.advance(t);
       const auto wanted = configuration_at(at_rest, t), found = configuration_at(fallen, t);
@@ -110,7 +110,7 @@ TEST(Gravity, AColumnInFreeFallIsTheSame) {
 // Profiles have the particles of rows that are not held where they have fallen to.
 TEST(Gravity, ProfilesOfRowsThatAreStreamed) {
   const auto particles = between(-0.01, uniform_rows(400), Wall<double>{-205., 0.25, .8});
-  auto run = falling(particles, Inelastic<double>(0.99, 0.1));
+  auto run = mass_run(particles, Inelastic<double>(0.99, 0.1));
   for (const double t : {20., 40., 120.}) {
     run.advance(t);
     const auto now = configuration_at(run, t);
@@ -123,45 +123,10 @@ TEST(Gravity, ProfilesOfRowsThatAreStreamed) {
   }
 }
 
-// The chain in gaps and that in positions make the same collisions, with the same account, between walls that are
-// shaken in different ways. (In a condensed column rounding decides what comes first. Walls that are not shaken:
-// precision/exact_gas_test.cpp.)
-void expect_the_same_in_positions(const Scene<double>& particles, double end, std::uint64_t least_collisions) {
-  const Inelastic<double> law(0.95, 1e-2);
-  auto gaps = falling(particles, law);
-  auto places = falling_positions(particles, law);
-  EXPECT_EQ(sequence_to(gaps, end), sequence_to(places, end));
-  EXPECT_GT(gaps.counts().collisions, least_collisions);
-  const auto& walls = gaps.chain().walls();
-  EXPECT_GT(walls.tally(End::left).collisions + walls.tally(End::right).collisions, 1U);
-  const auto c = configuration_at(gaps, end), d = configuration_at(places, end);
-  EXPECT_LT(largest_difference(c.x, d.x), 1e-9);
-  EXPECT_LT(largest_difference(c.v, d.v), 1e-9);
-  EXPECT_LT(std::abs(*c.closure_gap), 1e-12);
-  EXPECT_LT(std::abs(*c.closure_speed), 1e-13);
-  EXPECT_LT(unaccounted(gaps, *particles, end), 1e-13);
-  EXPECT_LT(unaccounted(places, *particles, end), 1e-13);
-  for (const auto& [at, energy] : {std::pair(c, sample(gaps, 0., end).energy), {d, sample(places, 0., end).energy}})
-    EXPECT_NEAR(kinetic_energy(at, *particles, at.time), energy, 1e-12 * energy);
-  EXPECT_TRUE(guards_hold(gaps, *particles, end) && guards_hold(places, *particles, end));
-}
-TEST(Gravity, CoordinatesAgree) {
-  for (const double a : {-0.0625, 0., 0.0625}) {
-    SCOPED_TRACE(a);
-    for (const Shape shape : shapes)
-      for (const bool both : {false, true}) {
-        SCOPED_TRACE(testing::Message() << "shape " << int(shape) << ", " << both);
-        const auto right = both ? wall(24, shaken(shape, 0.5, -1, 2)) : Wall<double>{24.};
-        expect_the_same_in_positions(between(a, rmix<double>(20), wall(-1, shaken(shape, 0.25, 0.3), 0.9, 0.01), right),
-                                     16, 50);
-      }
-  }
-}
-
 // An elastic column keeps its energy; a wrong one is found.
 TEST(Gravity, AnElasticColumnKeepsItsEnergy) {
   const auto particles = between(-1, rmix<double>(50), Wall<double>{-1.});
-  auto run = falling(particles, Inelastic<double>(1));
+  auto run = mass_run(particles, Inelastic<double>(1));
   EXPECT_EQ(run.advance(400), Status::reached);
   EXPECT_GT(run.counts().collisions, 10000U);
   EXPECT_LT(unaccounted(run, *particles, 400.), 1e-13);
@@ -196,13 +161,13 @@ TEST(Gravity, AnElasticColumnIsBallsThatBounceAlone) {
     x.push_back(i + 1 + double(bits_of(i, 0, 0x3FF)) / 2048), v.push_back(double(bits_of(i, 20, 0xFF) - 128) / 256);
   const auto column = between(-0.7, list(x, v), Wall<double>{0.});
   const Inelastic<double> law(1);
-  expect_balls(falling(column, law), x, v, 0.7);
-  expect_balls(falling_positions(column, law), x, v, 0.7);
+  expect_balls(mass_run(column, law), x, v, 0.7);
+  expect_balls(position_run(column, law), x, v, 0.7);
   // From the heights 1, 9, 25, ... they meet on the floor again and again, several at a time.
   const std::vector<double> squares{0.3, 2.7, 7.5, 14.7, 24.3, 36.3}, at_rest(6, 0.);
   const auto meeting = between(-0.7, list(squares, at_rest), Wall<double>{0.});
-  expect_balls(falling(meeting, law), squares, at_rest, 0.7);
-  auto run = falling(meeting, law);
+  expect_balls(mass_run(meeting, law), squares, at_rest, 0.7);
+  auto run = mass_run(meeting, law);
   run.advance(400);
   EXPECT_GT(run.chain().account().simultaneous, 0U);
   EXPECT_EQ(run.chain().account().order_lost, 0U);
@@ -212,8 +177,8 @@ TEST(Gravity, AnElasticColumnIsBallsThatBounceAlone) {
 TEST(Gravity, AFloorThatMovesUniformly) {
   const Inelastic<double> law(0.95, 1e-2);
   const auto particles = rmix<double>(20);
-  auto at_rest = falling(between(-0.5, particles, Wall<double>{-1., 0., .9}), law);
-  auto moving = falling(between(-0.5, seen_in(*particles, {.drift = 0.375}), Wall<double>{-1., .375, .9}), law);
+  auto at_rest = mass_run(between(-0.5, particles, Wall<double>{-1., 0., .9}), law);
+  auto moving = mass_run(between(-0.5, seen_in(*particles, {.drift = 0.375}), Wall<double>{-1., .375, .9}), law);
   at_rest.advance(50), moving.advance(50);
   EXPECT_GT(moving.counts().collisions, 200U);
   EXPECT_EQ(configuration_at(moving, 50.).gap, configuration_at(at_rest, 50.).gap);
@@ -225,10 +190,11 @@ TEST(Gravity, AFloorThatMovesUniformly) {
 TEST(Gravity, AMirrorImage) {
   const auto particles = rmix<double>(30);
   const auto expect_mirror = [&](const Shaking& low, const Shaking& high, double speed, double end) {
-    auto run = falling(between(-0.5, particles, wall(-1, low, 0.9, speed), wall(33, high)),
-                       Inelastic<double>(0.95, 1e-2)),
-         mirrored = falling(between(0.5, seen_in(*particles, mirror_frame), wall(-33, high), wall(1, low, 0.9, -speed)),
-                            Inelastic<double>(0.95, 1e-2));
+    auto run = mass_run(between(-0.5, particles, wall(-1, low, 0.9, speed), wall(33, high)),
+                        Inelastic<double>(0.95, 1e-2)),
+         mirrored =
+             mass_run(between(0.5, seen_in(*particles, mirror_frame), wall(-33, high), wall(1, low, 0.9, -speed)),
+                      Inelastic<double>(0.95, 1e-2));
     run.advance(end), mirrored.advance(end);
     EXPECT_GT(run.counts().collisions, 300U);
     auto gap = configuration_at(mirrored, end).gap;
@@ -242,8 +208,8 @@ TEST(Gravity, AMirrorImage) {
 // A ceiling above a ball that is thrown at it, grazes it, or does not reach it. The ball rises by v^2/2a.
 TEST(Gravity, ACeiling) {
   const auto bounces = [](double speed, double ceiling) {
-    auto run =
-        falling(between(-2, list<double>({1}, {speed}), Wall<double>{0.}, Wall<double>{ceiling}), Inelastic<double>(1));
+    auto run = mass_run(between(-2, list<double>({1}, {speed}), Wall<double>{0.}, Wall<double>{ceiling}),
+                        Inelastic<double>(1));
     std::vector<ParticleIndex> walls;
     run.advance(6., [&](const Collision<double>& c) { walls.push_back(c.left); });
     return walls.empty() ? -2 : walls.front();
@@ -267,7 +233,7 @@ TEST(Gravity, AGasOverAThermalFloor) {
   constexpr double temperature = 3, a = -1.5;
   const auto particles = between(a, list<double>(x, v, m), thermal(0., temperature));
   const auto mean_energy = [&](const auto& energy) {
-    auto run = falling(particles, Inelastic<double>(1));
+    auto run = mass_run(particles, Inelastic<double>(1));
     return block_mean(64, 400, 4, [&](double t) {
       EXPECT_EQ(run.advance(t), Status::reached);
       return energy(run, t);

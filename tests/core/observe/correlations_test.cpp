@@ -121,7 +121,7 @@ TEST(Correlator, ContinuesFromASavedState) {
 // Follows every particle through folded positions, by steps in which none moves by half of the ring.
 void expect_unfolded(const Scene<double>& scene, double restitution, double until) {
   const double length = scene->circumference();
-  MassRun<double> run = mass_run(scene, Inelastic(restitution));
+  auto run = mass_run(scene, Inelastic(restitution));
   TaggedParticles<double> all(*scene, 1), some(*scene, 3);
   std::vector<double> displacement(static_cast<std::size_t>(scene->count())), folded(displacement.size());
   for (std::size_t j = 0; j < folded.size(); ++j) folded[j] = scene->position(static_cast<ParticleIndex>(j));

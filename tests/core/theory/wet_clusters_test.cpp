@@ -1,8 +1,8 @@
 // The two heaviest clusters in the force of the wet zone, equation (16), and its simple version (17).
 // Proves: the integrated motion is that of closed forms (constant mass: parabolas of known period; growing mass:
-// flights with a logarithm) to its tolerance, although the force jumps; the adiabatic invariant and with it the
-// exponents of (17); energy in the zone at constant mass; what happens where the clusters meet; that samples, order and
-// mirror images change nothing.
+// flights with a logarithm) to its tolerance, although the force jumps; energy in the zone at constant mass; what
+// happens where the clusters meet; that samples, order and mirror images change nothing. (Oscillations in the zone and
+// the exponents of (17): tools/run/clusters_test.cpp.)
 #include "cradle/core/theory/wet_clusters.hpp"
 
 #include <boost/math/quadrature/gauss_kronrod.hpp>
@@ -14,7 +14,6 @@
 #include <cstddef>
 #include <limits>
 #include <utility>
-#include <vector>
 
 namespace cradle::test::wet_clusters_test {
 
@@ -131,44 +130,6 @@ TEST(WetClusters, GrowingMassFollowsTheClosedForm) {
   for (const double tolerance : {1e-6, 1e-8, 1e-10, 1e-12}) EXPECT_LT(error_of(tolerance), 1000 * tolerance);
 }
 
-TEST(WetClusters, SignForceHasTheExponentsOfItsAdiabaticInvariant) {
-  // Rest points at a: a^{3/2} (alpha/M)^{1/2} is constant to the change of M in a period, P/t = 4 sqrt(2 a M/alpha)/t.
-  const double alpha = 0.05, rate = 0.5;
-  auto run = motion(SignForce(alpha), freely, {1, 0, rate}, {-1, 0, rate});
-  struct Rest {
-    double time, amplitude, mass;
-  };
-  std::vector<Rest> rests;
-  Cluster before = run.first();
-  for (int k = 1; k <= 200000; ++k) {
-    const double t = 1e7 * std::pow(k / 200000., 3);
-    run.advance(t);
-    const Cluster now = run.first();
-    if (before.v * now.v < 0 && std::abs(now.x) > 0.5) rests.push_back({t, std::abs(now.x), now.mass});
-    before = now;
-  }
-  ASSERT_GT(rests.size(), 50U);
-  const auto invariant = [&](const Rest& r) { return std::pow(r.amplitude, 1.5) * std::sqrt(alpha / r.mass); };
-  const auto period = [&](const Rest& r) { return 4 * std::sqrt(2 * r.amplitude * r.mass / alpha); };
-  const OscillationExponents exponents;
-  const Rest& last = rests.back();
-  for (const Rest& rest : rests) {
-    if (rest.time < 1e3) continue;
-    EXPECT_NEAR(invariant(rest) / invariant(last), 1, period(rest) / rest.time) << rest.time;
-    const double span = std::log(last.time / rest.time);
-    if (span < 2) continue;
-    const double error = period(rest) / rest.time / span;
-    EXPECT_NEAR(std::log(last.amplitude / rest.amplitude) / span, exponents.amplitude, error);
-    EXPECT_NEAR(-std::log(period(last) / period(rest)) / span, exponents.frequency, error);
-    const auto speed = [&](const Rest& r) { return std::sqrt(2 * alpha * r.amplitude / r.mass); };
-    EXPECT_NEAR(std::log(speed(last) / speed(rest)) / span, exponents.speed, error);
-    EXPECT_NEAR(std::log(last.amplitude / rest.amplitude) / span, exponents.energy, error) << "alpha a";
-  }
-  // and the periods are those that went by: two rests are half a period apart, to the share by which it changes
-  for (std::size_t n = rests.size() / 2; n < rests.size(); ++n)
-    EXPECT_NEAR((rests[n].time - rests[n - 1].time) / (period(rests[n]) / 2), 1, period(rests[n]) / rests[n].time);
-}
-
 // ---- (16): the zone ----
 
 TEST(WetClusters, ConstantMassKeepsItsEnergyInTheZone) {
@@ -191,35 +152,6 @@ TEST(WetClusters, ConstantMassKeepsItsEnergyInTheZone) {
       EXPECT_NEAR(now.v * now.v / 2 + potential(now.x), energy, 1e3 * 1e-11 * 0.25) << k;
     }
   }
-}
-
-TEST(WetClusters, OscillateOnTheirSidesWithGrowingAmplitudeThenAroundTheCentre) {
-  auto run = in_the_papers_zone(Meeting::pass, {-1.2 * edge, 0, 0.5}, {1.2 * edge, 0, 0.5});
-  int turns = 0;
-  double before = 0, amplitude = 0;
-  for (double t = 0.25; t < 1e5; t += 0.25) {
-    run.advance(t);
-    if (!run.meetings().empty()) break;
-    ASSERT_LT(run.first().x, 0);
-    ASSERT_EQ(run.second()->x, -run.first().x);
-    if (before < 0 && run.first().v >= 0) {  // farthest out
-      EXPECT_GT(-run.first().x, amplitude) << turns;
-      amplitude = -run.first().x;
-      ++turns;
-    }
-    before = run.first().v;
-  }
-  ASSERT_FALSE(run.meetings().empty());
-  EXPECT_GE(turns, 4);
-  EXPECT_EQ(run.meetings()[0].x, 0);
-  // in the second regime the left one comes to the right as far as it was on the left
-  const double t = run.meetings()[0].time;
-  double farthest = 0;
-  for (int k = 1; k <= 1000; ++k) {
-    run.advance(t * (1 + k / 500.));
-    farthest = std::max(farthest, run.first().x);
-  }
-  EXPECT_GT(farthest, amplitude * 0.9);
 }
 
 TEST(WetClusters, ClusterAtRestOnTheEdgeStaysThere) {
@@ -293,15 +225,6 @@ TEST(ClusterMeeting, SampleAtTheMeetingIsTheStateAfterIt) {
   again.advance(run.meetings()[0].time);
   EXPECT_FALSE(again.second());
   EXPECT_EQ(again.first().v, 0);
-}
-
-TEST(ClusterMeeting, WetRuleSticksClustersThatJustGetOverTheBarrier) {
-  auto run = in_the_papers_zone(Meeting::energy, {-1.2 * edge, 0, 0.5}, {1.2 * edge, 0, 0.5});
-  run.advance(1e5);
-  ASSERT_EQ(run.meetings().size(), 1U);
-  EXPECT_LT(run.meetings()[0].relative_energy, 0.05);
-  EXPECT_EQ(run.first().x, 0) << "by symmetry it stays at the centre";
-  EXPECT_EQ(run.first().v, 0);
 }
 
 // ---- determinism ----

@@ -182,7 +182,7 @@ structure = { every = 1, times = [3] }
 pair_distribution = { every = 1, times = [3], distance = 20, bins = 8 }
 )";
   const Result wanted = result_of(scene);
-  in_wide_types(scene, "", [&](const Result& found) {
+  in_wide_types(scene, [&](const Result& found) {
     for (const auto& [group, name] : of_particles) {
       const auto a = numbers(wanted, group, name), b = numbers(found, group, name);
       ASSERT_EQ(a.size(), b.size());

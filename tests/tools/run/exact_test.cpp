@@ -66,8 +66,8 @@ void expect_rounded(const Result& result, std::size_t groups) {
 }
 
 TEST_F(Exact, DoublesAreTheDecimalsRounded) {
-  in_wide_types(shock, "", [](const Result& result) { expect_rounded(result, 5); });
-  in_wide_types(wet, "", [](const Result& result) { expect_rounded(result, 6); });
+  in_wide_types(shock, [](const Result& result) { expect_rounded(result, 5); });
+  in_wide_types(wet, [](const Result& result) { expect_rounded(result, 6); });
 }
 
 // Two particles at 0 and 1 with 0.3 and -0.4 and a restitution of 0.7 meet at t = 1/.7 and part with 0.49: their
@@ -80,7 +80,7 @@ TEST_F(Exact, DecimalsHaveTheDigitsOfTheType) {
   const std::string scene = "law = { type = 'inelastic', restitution = 0.7 }\nrun.until = 5\n"
                             "initial = { type = 'list', x = [0, 1], v = [0.3, -0.4] }\n"
                             "output = { series.points = 2, snapshots = [5], events = true }\n";
-  in_wide_types(scene, "", [&](const Result& result) {
+  in_wide_types(scene, [&](const Result& result) {
     const Rational bound = decimal<Rational>(
         "1e-" + std::to_string(digits.at(attribute<std::string>(result.attributes, "precision", ""))));
     const auto near = [&](const char* group, const char* name, std::size_t row, const Rational& expected) {
@@ -135,7 +135,7 @@ TEST_F(Exact, TimesAreTheDecimalsOfTheScene) {
       "profiles.times = { from = 0.1, until = 4.9, every = 0.1 }\n"
       "structure = { length = 20, times = { from = 0.1, until = 4.9, every = 0.1 } }\ncorrelations.every = 0.1\n";
   expect_multiples_of_a_tenth(result_of(tenths));
-  in_wide_types(tenths, "", expect_multiples_of_a_tenth);
+  in_wide_types(tenths, expect_multiples_of_a_tenth);
 }
 
 TEST_F(Exact, DoublesNeedNone) {

@@ -1,5 +1,6 @@
-// Ranges of times in place of lists, and the doubles nearest to their decimals. (These decimals, in files and on the
-// command line, are in values.txt, messages in tests/tools/messages.txt.)
+// Ranges of times in place of lists, and the doubles nearest to their decimals. (That these are the decimals of a
+// range: decimal_test.cpp and run/exact_test.cpp; in files and on the command line: values.txt. Messages:
+// tests/tools/messages.txt.)
 
 #include "cradle/tests/core/rational.hpp"
 #include "cradle/tests/tools/program.hpp"
@@ -14,20 +15,6 @@ using cradle::test::Rational;
 Scene parse(const std::string& output, const std::vector<std::string>& overrides = {}) {
   const std::string ring = "law.type = 'sticky'\ninitial = { type = 'ring', particles = 10 }\nrun.until = 100\n";
   return parse_scene(ring + "[output]\n" + output, "s.toml", overrides);
-}
-
-// Sums and products of 0.1 are not the doubles nearest to these decimals.
-TEST(TimeRange, StepsAreTheDecimalsThatAUserWouldWrite) {
-  const Scene scene = parse("snapshots = { from = 0, until = 100, every = 0.1 }");
-  const Schedule plan(scene);
-  const Times& times = plan.snapshots();
-  ASSERT_EQ(times.size(), 1001U);
-  for (std::size_t k = 0; k <= 1000; ++k) {
-    const std::string decimal = fmt::format("{}.{}", k / 10, k % 10);
-    EXPECT_EQ(times[k].value, std::stod(decimal));
-    EXPECT_EQ(scene.output.snapshots[k], Decimal(decimal));
-  }
-  EXPECT_NE(times[3].value, 3 * 0.1);
 }
 
 // Of the series; 3 0.1 is above 0.3 if it is rounded, and was no sample.

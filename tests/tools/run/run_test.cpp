@@ -3,7 +3,6 @@
 // its closed form. (That two runs give the same bytes: tests/tools/run/outputs.txt.)
 
 #include <cmath>
-#include <limits>
 
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/tools/program.hpp"
@@ -55,18 +54,6 @@ TEST_F(Run, CollapseStopsOnceItsTimeIsSettled) {
   EXPECT_NEAR(tools::attribute<double>(collapse, "time", ""), 12.0 / 7.0, 1e-15);
   EXPECT_GT(tools::attribute<double>(collapse, "gap", ""), 1e-30);
   EXPECT_TRUE(has(run.out, "t_c = ")) << "the report is printed under --quiet too";
-}
-
-// What the type does not hold is refused (tests/tools/messages.txt); what a double does not hold is infinite where
-// doubles are, and has all its digits below /exact.
-TEST_F(Run, EnergiesThatOverflow) {
-  const auto result = result_of("law = { type = 'inelastic', restitution = 0.9 }\nrun.until = 1e-160\n"
-                                "initial = { type = 'list', x = [0, 1, 2], v = [1e160, -1e160, -2e160] }\n"
-                                "output.series.points = 3\n",
-                                "--set run.precision=mpfr");
-  EXPECT_EQ(numbers(result, "series", "energy"), std::vector<double>(3, std::numeric_limits<double>::infinity()));
-  const auto exact = numbers<std::string>(result, "exact/series", "energy");
-  EXPECT_TRUE(exact[0].starts_with("3.00") && exact[0].ends_with("e320")) << exact[0];
 }
 
 TEST_F(Run, EventsAreEveryCollisionInOrder) {

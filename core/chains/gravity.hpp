@@ -2,8 +2,9 @@
 // Gravity and shaken walls as a chain sees them: a pull on the gaps to walls, or a motion of these walls, and nothing
 // else (laws/wall_approach.hpp). Without either no gap is pulled.
 //
-// Several particles that rest on a wall are a pile: the gaps in it are 0 and closed, the gap above it is as one to the
-// wall. Which gap that is follows from how many there are, in particles from the wall (gap_chain.hpp).
+// Particles that rest on a wall are a pile: the gaps in it are 0 and closed, the gap above it is as one to the wall.
+// Which gap that is follows from how many there are, in particles from the wall (gap_chain.hpp). A single particle,
+// whose gap tells that it rests, is a pile where there is another wall, since the gap to that one has to know it, too.
 
 #include "cradle/core/initial/particles.hpp"
 #include "cradle/core/laws/wall_approach.hpp"
@@ -32,7 +33,8 @@ template <Real T> class Gravity {
  public:
   explicit Gravity(const Particles<T>& particles)
       : acceleration_(particles.acceleration()), left_(end(particles, End::left)), right_(end(particles, End::right)),
-        holds_(particles.holding() != nullptr), piles_(particles.count() > 1 && holds_),
+        holds_(particles.holding() != nullptr),
+        piles_(holds_ && (particles.count() > 1 || (particles.wall(End::left) && particles.wall(End::right)))),
         pile_end_(piles_ && particles.holding() == particles.wall(End::right) ? End::right : End::left),
         anywhere_(acceleration_ != T(0) || shaken()), gaps_(particles.gaps()), count_(particles.count()) {
     if (anywhere_) splitter_ = splitter<T>();
@@ -59,7 +61,7 @@ template <Real T> class Gravity {
 
   // Whether a wall has all particles on it, or the single one that it can hold.
   bool holds_all() const { return resting_ == count_ || (holds_ && count_ == 1); }
-  // Whether several particles can rest, at which end, and how many do; a gap there, counted from the wall.
+  // Whether particles can be a pile, at which end, and how many are in it; a gap there, counted from the wall.
   bool piles() const { return piles_; }
   End pile_end() const { return pile_end_; }
   ParticleIndex resting() const { return resting_; }

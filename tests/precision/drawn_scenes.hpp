@@ -167,8 +167,7 @@ inline Drawn draw_shaken(std::uint64_t number) {
     if (d.walls[side] && (number % 2 == side || !d.walls[1 - side])) shake(*d.walls[side], number, side);
   return d;
 }
-// Particles that fall on a floor that holds them, shaken in three of four scenes; below a ceiling in a third of them,
-// if there are several.
+// Particles that fall on a floor that holds them, shaken in three of four scenes; below a ceiling in a third of them.
 inline Drawn draw_resting(std::uint64_t number) {
   Drawn d = draw(number);
   const auto below = [&](std::uint64_t index, int bound) {
@@ -186,7 +185,7 @@ inline Drawn draw_resting(std::uint64_t number) {
   floor.rest_speed = 16 + below(6, 64);
   if (number % 4 > 0) shake(floor, number, 2), floor.shaking->frequency += 128;
   d.walls[side] = floor;
-  if (number % 3 == 0 && d.gaps.size() > 1) d.walls[1 - side] = DrawnWall{64 + below(7, 64), -floor.speed, "0.75"};
+  if (number % 3 == 0) d.walls[1 - side] = DrawnWall{64 + below(7, 64), -floor.speed, "0.75"};
   return d;
 }
 

@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <functional>
+
 #include "cradle/tools/commands/commands.hpp"
 #include "cradle/tools/support/atomic_file.hpp"
 #include "cradle/tools/support/interrupt.hpp"
@@ -23,6 +26,11 @@ struct TrustArguments : CommonOptions, OutputOptions {
 
 Exit run_trust(const TrustArguments& options) {
   const Scene scene = options.read();
+  if (!std::ranges::is_sorted(options.digits, std::ranges::less_equal()))
+    throw Error({"", 0, "--digits"}, "not rising", fmt::format("{}", fmt::join(options.digits, ",")),
+                "give the reference, which has most of them, last");
+  if (options.both && particles_merge(scene))
+    throw Error({"", 0, "--both"}, "particles that merge are computed in gaps", "", "leave out --both");
   const std::string output = options.output_or(scene.name + "-trust.h5");
   const FileClaim claim(output);
   check_overwrite(output, options.command(), &scene, options.force());
@@ -45,7 +53,7 @@ void add_trust(CommandLine& program) {
   command.list("--digits", options.digits, {10, 1000},
                "digits to compare, 10 to 1000, the reference last; 16 is double, 31 double-double, others mpfr "
                "(default: rising until two runs agree)");
-  command.flag("--both", options.both, "in absolute coordinates too");
+  command.flag("--both", options.both, "in absolute coordinates too; a scene that has these is compared so anyway");
   add_output_options(command, options, "result file (default: the scene's name with -trust.h5)");
 }
 

@@ -41,6 +41,8 @@ Exit run_words(const WordsArguments& options) {
   if (options.word.empty() == (options.search == 0))
     throw Error({}, options.word.empty() ? "no word" : "a word and a search", options.word,
                 "give either a word or --search LENGTH");
+  if (options.at && options.word.empty())
+    throw Error({"", 0, "--at"}, "acts on nothing in a search", *options.at, "give it with a word");
   const std::string output = !options.output.empty() ? options.output
                              : options.word.empty()  ? "words-" + options.particles + ".h5"
                                                      : options.word + ".h5";

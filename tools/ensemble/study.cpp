@@ -26,12 +26,15 @@ bool is_random(const Scene& scene) {
 std::string same_replicas_warning(const Study& study, std::uint64_t replicas) {
   if (replicas < 2) return "";
   std::string points;
+  bool listed = false;
   for (const auto& [group, scene] : study.points)
-    if (!is_random(scene)) points += (points.empty() ? "" : ", ") + (group.empty() ? scene.name : group);
+    if (!is_random(scene)) {
+      points += (points.empty() ? "" : ", ") + (group.empty() ? scene.name : group);
+      listed = listed || scene.initial.type == InitialType::list;
+    }
   if (points.empty()) return "";
-  return fmt::format("nothing is random in {}: all {} replicas are the same run; give initial.perturbation, or "
-                     "--replicas 1\n",
-                     points, replicas);
+  return fmt::format("nothing is random in {}: all {} replicas are the same run; give {}--replicas 1\n", points,
+                     replicas, listed ? "" : "initial.perturbation, or ");
 }
 
 std::uint64_t Study::identity() const {

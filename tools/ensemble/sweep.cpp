@@ -150,9 +150,13 @@ std::vector<SweepPoint> sweep_points(const Sweep& sweep, double most) {
     throw Error({"", 0, "--vary"}, "nothing to vary", "",
                 "give --vary KEY=FROM:TO:COUNT, or --point, or a scene with a table [sweep]");
   for (const SweepPoint& point : points)
-    for (auto at = point.begin(); at != point.end(); ++at)
-      if (const auto key = key_of(*at); std::ranges::find(point.begin(), at, key, key_of) != at)
+    for (auto at = point.begin(); at != point.end(); ++at) {
+      const auto key = key_of(*at);
+      if (std::ranges::find(point.begin(), at, key, key_of) != at)
         throw Error({"", 0, std::string(key)}, "twice in a point of the sweep", text_of(point), "give one of the two");
+      if (key.starts_with("sweep."))
+        throw Error({"", 0, std::string(key)}, "says how to sweep", text_of(point), "give a key of the system instead");
+    }
   return points;
 }
 

@@ -218,13 +218,13 @@ void compare_with_proof(Trusted& trusted, const Traced& run, const ProvedTrace& 
 }  // namespace
 
 std::vector<Trusted> trust(const Scene& scene, const TrustOptions& options) {
-  const bool rising = options.digits.empty();
+  const bool rising = options.digits.empty(), both = options.both || scene.run.coordinates == Coordinates::absolute;
   std::vector<Traced> runs;
   for (const unsigned digits : rising ? std::vector{16U, 31U, 50U, 100U, 200U, 400U} : options.digits) {
-    if (options.both && !particles_merge(scene))
+    if (both && !particles_merge(scene))
       runs.push_back(traced(at_digits(scene, digits, Coordinates::absolute), options));
     runs.push_back(traced(at_digits(scene, digits, Coordinates::gaps), options));
-    const std::size_t step = options.both ? 2 : 1;
+    const std::size_t step = both ? 2 : 1;
     if (rising && runs.size() > 2 * step && agree(runs[runs.size() - 1 - step], runs.back())) break;
   }
   const ProvedTrace proof = proved_trace(scene, runs.back(), options);

@@ -59,8 +59,8 @@ Scene extended(Scene scene, const std::string& until, const std::string& file) {
 
 // Lists of times are not extended: of a run that was cut short by --set run.until they have lost the times of the scene
 // that came later. Of a bundled scene these are known; of another one, snapshots that end before the run may have been
-// cut off. (If there are none, as a rule there were none.)
-std::string lists_not_extended(const Scene& scene, const Decimal& later) {
+// cut off. (If there are none, as a rule there were none.) Nor is what is measured from samples whose number is given.
+std::string kept_with_a_later_end(const Scene& scene, const Decimal& later) {
   const auto bundled = bundled_scenes();
   const auto at = std::find_if(bundled.begin(), bundled.end(),
                                [&](const auto& b) { return b.name.substr(b.name.rfind('/') + 1) == scene.name; });
@@ -81,10 +81,25 @@ std::string lists_not_extended(const Scene& scene, const Decimal& later) {
   } else {
     check("output.snapshots", !snapshots.empty() && snapshots.back() < scene.run.until);
   }
-  if (keys.empty()) return "";
-  return fmt::format("lists of times are not extended beyond t = {} ({}): to have later times of the scene, run it "
-                     "with --set run.until={}\n",
-                     scene.run.until.text, keys, later.text);
+  std::string said;
+  if (!keys.empty())
+    said = fmt::format("lists of times are not extended beyond t = {} ({}): to have later times of the scene, run it "
+                       "with --set run.until={}\n",
+                       scene.run.until.text, keys, later.text);
+  keys.clear();
+  const Output& o = scene.output;
+  const std::pair<const char*, const Samples*> windows[] = {{"output.averages", &o.averages},
+                                                            {"output.counting", &o.counting},
+                                                            {"output.correlations", &o.correlations},
+                                                            {"output.structure", &o.structure},
+                                                            {"output.pair_distribution", &o.pair_distribution}};
+  for (const auto& [key, samples] : windows)
+    check(key,
+          samples->until == scene.run.until && (samples->every || (samples == &o.counting && !o.histograms.empty())));
+  if (!keys.empty())
+    said += fmt::format("what is measured up to t = {} stays so ({}): for a later end of it, run the scene anew\n",
+                        scene.run.until.text, keys);
+  return said;
 }
 
 // Without an observer of collisions the sticky gas is computed directly at each time, and its rounding depends on these
@@ -209,7 +224,7 @@ void RunFiles::resume_from_result(const std::optional<std::string>& until) {
 }
 
 void RunFiles::extend(const std::string& until, const std::string& path) {
-  not_extended_ = lists_not_extended(scene_, Decimal(until));
+  not_extended_ = kept_with_a_later_end(scene_, Decimal(until));
   scene_ = extended(scene_, until, path);
   scene_.name = header_.name;
   header_.scene = effective_toml(scene_);

@@ -49,7 +49,7 @@ class RunFiles : public Sink {
   Exit over_status() const { return over_status_; }
   /// Where the run continues from: "t = 1200, 3.4e7 collisions"; empty: it begins again.
   const std::string& resumed_from() const { return from_; }
-  /// Which lists of times a later end does not extend, a line for the user; empty: none.
+  /// Which lists of times and measurements a later end does not extend, lines for the user; empty: none.
   const std::string& not_extended() const { return not_extended_; }
   std::uint64_t collisions_before() const { return collisions_before_; }
   /// Whether the files have all that was computed up to the end of the run.

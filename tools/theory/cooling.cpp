@@ -15,8 +15,8 @@ void predict_cooling(const Scene& scene, Predictions& table) {
   const theory::FreeCooling gas{scene.initial.variance.value, particles / scene.initial.length.value};
   const double until = scene.run.until.value - scene.run.start.value;
   const double flight = 1 / (gas.density * std::sqrt(gas.variance));  // a mean spacing at the thermal speed
-  if (!(until > flight)) return;
-  const bool dry = scene.law.type == LawType::inelastic && scene.law.restitution < Decimal("1");
+  const bool dry = scene.law.type == LawType::inelastic;
+  if (!(until > flight) || (dry && scene.law.restitution == Decimal("1"))) return;
   if (dry) table.number("haff_time", "Haff 1983", "continuous", theory::haff_time(gas, scene.law.restitution.value));
   for (int k = 0; k <= curve_points; ++k) {
     const double t = flight * std::pow(until / flight, static_cast<double>(k) / curve_points);

@@ -3,8 +3,8 @@
 // else (laws/wall_approach.hpp). Without either no gap is pulled.
 //
 // Particles that rest on a wall are a pile: the gaps in it are 0 and closed, the gap above it is as one to the wall.
-// Which gap that is follows from how many there are, in particles from the wall (gap_chain.hpp). A single particle,
-// whose gap tells that it rests, is a pile where there is another wall, since the gap to that one has to know it, too.
+// Which gap that is follows from how many there are, in particles from the wall (gap_chain.hpp). A single particle
+// that rests is a pile where there is another wall, too: the gap to that wall then does not close by gravity.
 
 #include "cradle/core/initial/particles.hpp"
 #include "cradle/core/laws/wall_approach.hpp"

@@ -191,7 +191,8 @@ std::string exhausted_warning(const Number& time, std::uint64_t collisions, cons
 double energy_digits(const Scene& scene, const AnyEngine& engine, const RunState& now, bool& grown) {
   const double at_start = now.energy_at_start().value, at_end = now.state().energy.value;
   const std::optional<double> off = at_end > 0 ? now.energy_deviation(at_end) : 0;
-  grown = !off && (particles_merge(scene) || scene.walls.shaken() || scene.gravity.acceleration ||
+  const bool heated = scene.walls.left.temperature || scene.walls.right.temperature;
+  grown = !off && (particles_merge(scene) || heated || scene.walls.shaken() || scene.gravity.acts() ||
                    unequal_masses(scene) || scene.run.coordinates == Coordinates::absolute);
   if (engine.account().uncertain && at_start != at_end) return 0;
   const auto active = static_cast<double>(std::max<ParticleIndex>(engine.collided_particles(), 1));

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cradle/core/theory/wet_clusters.hpp"
+#include "cradle/core/theory/wet_zone.hpp"
 #include "cradle/tools/record/series.hpp"
 
 namespace cradle::tools {

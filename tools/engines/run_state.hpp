@@ -37,7 +37,7 @@ struct SampledState {  // core/observe/sample.hpp
   std::array<Wall, 2> walls;
 };
 
-struct SampledCloud {  // core/observe/clusters.hpp
+struct SampledCloud {  // core/observe/scenario.hpp
   struct Heaviest {
     Number mass, x, v;
     ParticleIndex index;

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "cradle/core/engine/sticky_gas.hpp"
-#include "cradle/core/observe/clusters.hpp"
 #include "cradle/core/observe/configuration_statistics.hpp"
 #include "cradle/core/observe/correlations.hpp"
+#include "cradle/core/observe/scenario.hpp"
 #include "cradle/tools/engines/engine_of.hpp"
 #include "cradle/tools/engines/numbers_in.hpp"
 #include "cradle/tools/engines/run_state.hpp"

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "cradle/core/chains/cluster_chain.hpp"
-#include "cradle/core/observe/clusters.hpp"
+#include "cradle/core/observe/scenario.hpp"
 #include "cradle/tests/core/fixtures.hpp"
 
 namespace cradle::test::wet_test {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "cradle/core/chains/cluster_chain.hpp"
-#include "cradle/core/observe/clusters.hpp"
+#include "cradle/core/observe/scenario.hpp"
 #include "cradle/core/observe/zone.hpp"
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/core/observe/placed.hpp"

@@ -125,7 +125,7 @@ TEST(Architecture, CoreUsesNoStandardMathematicsOnTheScalar) {
       R"(std::(abs|fabs|sqrt|cbrt|pow|exp|exp2|log|log2|log10|log1p|expm1|sin|cos|tan|atan|atan2|hypot|fma|floor|)"
       R"(ceil|round|isnan|isfinite|ldexp|frexp)\b)");
   const std::regex on_double(
-      R"(core/(base/(counter_rng|elementary|real)|certify/(certain_(power|state|walls?)|inspection)|)"
+      R"(core/(base/(counter_rng|elementary|real)|certify/(certain_(law|state|walls?)|inspection)|)"
       R"(chains/configuration|ensemble/statistics|initial/(rows|velocities)|laws/(approach|turns|wall)|)"
       R"(observe/(averages|batch_means|clusters|correlations|profile|scenario|structure|zone)|)"
       R"(parallel/(observed|segments)|theory/free_cooling)\.hpp)");

@@ -50,7 +50,7 @@ TEST_P(CollapsePolicies, StopSettlesTheCollapseTime) {
   const CollapseReport<double>& report = run.collapse();
   ASSERT_TRUE(report.settled);
   // Settled by the second collision, after at most six roundings each of a gap, of speeds and of time, none of which
-  // acts on t_c by more than a factor 3: t_c = 1 + g/z, g = u = 1 and z > 1 (two_gaps.hpp).
+  // acts on t_c by more than a factor 3: t_c = 1 + g/z, g = u = 1 and z > 1 (collapse_ahead.hpp).
   EXPECT_NEAR(report.time.value(), collapse_time(), 2 * epsilon * collapse_time());
   EXPECT_LE(std::abs(report.time.value() - collapse_time()), report.uncertainty);
   EXPECT_LE(report.uncertainty, 27 * epsilon);

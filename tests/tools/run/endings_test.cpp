@@ -117,7 +117,7 @@ struct Reached {
     if (at != std::string::npos) std::sscanf(&interrupted.err[at], "interrupted: t = %lf, %lf", &time, &collisions);
   }
 };
-// With 48 particles and less so many collisions may follow each other at one time (standstill.hpp).
+// With 48 particles and less so many collisions may follow each other at one time (pacing.hpp).
 constexpr double most_at_one_time = (1 << 20) + 4096. * 48 * 48;
 
 // A scene of any kind. (The engine is specified bit by bit, and so are these numbers.)

@@ -58,7 +58,9 @@ void run_ensemble(const tools::Scene& scene, int replicas, unsigned threads) {
   options.replicas = {0, static_cast<std::uint64_t>(replicas)};
   options.threads = threads;
   options.progress = tools::ProgressLine::Show::never;
-  tools::run_ensemble(scene, options, file);
+  tools::Interrupt interrupt;
+  tools::OneProcess alone(interrupt);
+  tools::run_study(tools::ensemble_of(scene), options, file, alone);
   std::filesystem::remove(file);
 }
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "cradle/tests/fuzz/fuzz.hpp"
-#include "cradle/tools/ensemble/sweep.hpp"
+#include "cradle/tools/ensemble/study.hpp"
 #include "cradle/tools/scene/scene.hpp"
 #include "cradle/tools/setup/list_file.hpp"
 #include "cradle/tools/setup/read_scene.hpp"

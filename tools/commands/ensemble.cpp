@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include "cradle/tools/commands/study.hpp"
-#include "cradle/tools/ensemble/sweep.hpp"
+#include "cradle/tools/ensemble/study.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
 
 namespace cradle::tools {

@@ -29,7 +29,9 @@ Exit resume(const ResumeArguments& options) {
     if (options.until)
       throw Error({"--until", 0, ""}, "an ensemble has no later end", *options.until, "give it a file of its own");
     return run_study_command(options.quiet, [&] {
-      return StudyPlan{study_in(*journal, path), {journal->wanted, options.threads, options.show()}, file};
+      const Error damaged({path}, "its scenes are not those of its replicas", "another identity",
+                          "take it from a copy, or remove it", Exit::io);
+      return StudyPlan{study_in(*journal, path, damaged), {journal->wanted, options.threads, options.show()}, file};
     });
   }
   Interrupt interrupt;

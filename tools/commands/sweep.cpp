@@ -1,4 +1,4 @@
-#include "cradle/tools/ensemble/sweep.hpp"
+#include "cradle/tools/ensemble/study.hpp"
 
 #include "cradle/tools/commands/commands.hpp"
 #include "cradle/tools/commands/study.hpp"

@@ -1,6 +1,6 @@
 // Sweeps: the points that texts describe, the texts that are refused, and the table of a small sweep compared with runs
 // made one by one.
-#include "cradle/tools/ensemble/sweep.hpp"
+#include "cradle/tools/ensemble/study.hpp"
 
 #include <cmath>
 

@@ -23,15 +23,15 @@ enum class CollapsePolicy {
   stop     // exact dynamics; stop when the collapse time is known, or when a gap is below a given size
 };
 
-// What is known of a collapse when the run stops.
-template <Real T> struct CollapseReport {
+// What is known of a collapse when the run stops, in numbers of the scalar type or of what stands for that in a report.
+template <class T, class Time = Pair<T>> struct CollapseReport {
   T last_collision{0};          // time of the last collision made
   T interval{0};                // since the previous collision at the same gap, 0 if there was none
   T gap{0};                     // smallest gap beside the last collision, or height of the rebound from a floor
   ParticleIndex particle = -1;  // the particle on the left of the gap of the last collision
   bool settled = false;
   // If it is settled: t_c, the limit of the ratio of successive intervals there, and bounds of their errors.
-  Pair<T> time{};
+  Time time{};
   T uncertainty{0}, ratio{0}, ratio_uncertainty{0};
 
   static auto state(auto& self) {

@@ -101,7 +101,7 @@ TEST_F(Endings, NoMachineIsBlamedForWhatPositionsDoNotResolve) {
   EXPECT_TRUE(has(end.err, "run.coordinates = \"gaps\"")) << end.err;
   tools::Run positions;
   positions.coordinates = Coordinates::absolute;
-  ReportedAccount unresolved;
+  Account<Number> unresolved;
   unresolved.unresolved = 1;
   const ReportedGuard energy{Guard::energy, 1, 0, -1, {}}, wall{Guard::wall, -1, 0, 0, {}};
   EXPECT_FALSE(has(guard_message(energy, unresolved, positions), "at fault"));

@@ -9,7 +9,6 @@
 #include "cradle/tools/proof/replicas.hpp"
 #include "cradle/tools/support/atomic_file.hpp"
 #include "cradle/tools/support/interrupt.hpp"
-#include "cradle/tools/support/notify.hpp"
 
 namespace cradle::tools {
 

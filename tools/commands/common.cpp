@@ -3,7 +3,6 @@
 #include "cradle/tools/commands/commands.hpp"
 #include "cradle/tools/result/writer.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
-#include "cradle/tools/support/notify.hpp"
 
 namespace cradle::tools {
 

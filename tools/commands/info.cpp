@@ -14,8 +14,6 @@
 #include "cradle/tools/setup/read_scene.hpp"
 #include "cradle/tools/store/journal.hpp"
 #include "cradle/tools/store/run_files.hpp"
-#include "cradle/tools/support/progress.hpp"
-#include "cradle/tools/support/time_left.hpp"
 #include "cradle/tools/theory/cost.hpp"
 
 namespace cradle::tools {

@@ -5,7 +5,6 @@
 #include "cradle/tools/store/run_files.hpp"
 #include "cradle/tools/support/atomic_file.hpp"
 #include "cradle/tools/support/interrupt.hpp"
-#include "cradle/tools/support/notify.hpp"
 
 namespace cradle::tools {
 

@@ -6,7 +6,6 @@
 #include <memory>
 
 #include "cradle/tools/support/interrupt.hpp"
-#include "cradle/tools/support/notify.hpp"
 #include "cradle/tools/theory/cost.hpp"
 
 namespace cradle::tools {

@@ -10,7 +10,7 @@
 #include <optional>
 #include <utility>
 
-#include "cradle/tools/support/shell.hpp"
+#include "cradle/tools/support/spelling.hpp"
 #include "cradle/tools/support/threads.hpp"
 
 namespace cradle::tools {

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "cradle/core/initial/rows.hpp"
-#include "cradle/tools/support/checksum.hpp"
+#include "cradle/tools/support/bytes.hpp"
 #include "cradle/tools/support/version.hpp"
 
 namespace cradle::tools {

@@ -4,7 +4,6 @@
 #include "cradle/tools/run/clusters.hpp"
 #include "cradle/tools/run/scene_run.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
-#include "cradle/tools/support/notify.hpp"
 #include "cradle/tools/support/version.hpp"
 
 namespace cradle::tools {

@@ -8,8 +8,7 @@
 
 #include "cradle/tools/scene/fields.hpp"
 #include "cradle/tools/scene/source.hpp"
-#include "cradle/tools/support/checksum.hpp"
-#include "cradle/tools/support/shell.hpp"
+#include "cradle/tools/support/bytes.hpp"
 #include "cradle/tools/support/spelling.hpp"
 #include "cradle/tools/support/version.hpp"
 

@@ -10,7 +10,6 @@
 #include "cradle/tests/tools/store/stopping.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
 #include "cradle/tools/support/bytes.hpp"
-#include "cradle/tools/support/checksum.hpp"
 
 namespace malformed_test {
 

@@ -10,7 +10,7 @@
 #include "cradle/tools/result/writer.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
 #include "cradle/tools/store/run_files.hpp"
-#include "cradle/tools/support/checksum.hpp"
+#include "cradle/tools/support/bytes.hpp"
 #include "cradle/tools/support/version.hpp"
 
 namespace run_files_test {

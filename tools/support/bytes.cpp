@@ -1,4 +1,4 @@
-#include "cradle/tools/support/checksum.hpp"
+#include "cradle/tools/support/bytes.hpp"
 
 #include <lzma.h>
 

@@ -8,7 +8,6 @@
 
 #include "cradle/precision/bin_float.hpp"
 #include "cradle/tools/record/rows.hpp"
-#include "cradle/tools/scene/decimal_parts.hpp"
 #include "cradle/tools/support/table.hpp"
 
 namespace cradle::tools {

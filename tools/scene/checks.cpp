@@ -179,22 +179,4 @@ void check_scene(const Scene& scene, const Entries& entries, const std::string& 
     check(of);
 }
 
-words::Word word_at(const Place& place, const std::string& letters, std::size_t gaps) {
-  try {
-    return words::read_word(letters, gaps);
-  } catch (const words::BadWord& bad) {
-    throw Error(place, bad.what(), bad.found, bad.advice);
-  }
-}
-
-void check_word(const Place& place, const Scene& scene) {
-  if (particles_merge(scene) || scene.initial.on_ring())
-    throw Error(place, "letters are of particles on a line that bounce",
-                scene.initial.on_ring() ? "a ring" : "particles that merge", "remove it, or give output.events");
-  const std::size_t gaps = scene.gaps(), most = 26;
-  if (gaps < 2 || gaps > most)
-    throw Error(place, "not a few particles", fmt::format("{} gaps", gaps), fmt::format("give 2 to {}", most));
-  if (*scene.output.word != any_word) word_at(place, *scene.output.word, gaps);
-}
-
 }  // namespace cradle::tools

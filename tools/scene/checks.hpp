@@ -3,7 +3,6 @@
 // out of order, two settings for the same thing, and numbers beyond the range of the working precision.
 #pragma once
 
-#include "cradle/core/words/word.hpp"
 #include "cradle/tools/scene/scene.hpp"
 #include "cradle/tools/scene/source.hpp"
 
@@ -23,11 +22,5 @@ void refuse_inapplicable_keys(const Entries& entries, const Scene& scene, std::s
 /// Throws Error at the place of the wrong key. `entries` give the places of keys; `scene_file` names the file for keys
 /// that are missing.
 void check_scene(const Scene& scene, const Entries& entries, const std::string& scene_file);
-
-/// The word of these letters, which stand at this place. Throws Error.
-words::Word word_at(const Place& place, const std::string& letters, std::size_t gaps);
-
-/// Checks output.word, which is at this place, once the particles of a list are read.
-void check_word(const Place& place, const Scene& scene);
 
 }  // namespace cradle::tools

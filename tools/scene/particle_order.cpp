@@ -19,21 +19,23 @@ void NumberRange::check_positive(std::string_view literal, const Place& place) c
               "give a larger number or another run.precision");
 }
 
-void check_neighbours(const Listed& left, const Listed& right, const NumberRange& range, const Place& place) {
-  const auto order = compare_decimals(right.x, left.x);
-  if (std::is_gt(order)) return range.check_positive(difference(right.x, left.x), place);
-  const auto places = fmt::format("{} after {}", right.x, left.x);
+void check_neighbours(const DecimalColumn& x, const DecimalColumn& v, std::size_t right, const NumberRange& range,
+                      const Place& place) {
+  const std::size_t left = right - 1;
+  const auto order = compare_decimals(x[right], x[left]);
+  if (std::is_gt(order)) return range.check_positive(difference(x[right], x[left]), place);
+  const auto places = fmt::format("{} after {}", x[right], x[left]);
   if (std::is_lt(order)) throw Error(place, "not increasing", places, "give the particles in order of increasing x");
-  if (std::is_gt(compare_decimals(left.v, right.v)))
+  if (std::is_gt(compare_decimals(v[left], v[right])))
     throw Error(place, "particles that touch and approach", places,
                 "give them the velocities that they have after this collision, or a distance: initial.gap, or a column "
                 "gap, with 1e-300 there");
 }
 
-void check_order(const ListedParticles& of, const Run& run, const std::function<Place(std::size_t)>& before) {
+void check_order(const DecimalColumn& x, const DecimalColumn& v, const Run& run,
+                 const std::function<Place(std::size_t)>& before) {
   const NumberRange range(run);
-  for (std::size_t i = 1; i < of.x.size(); ++i)
-    check_neighbours({of.x[i - 1], of.v[i - 1]}, {of.x[i], of.v[i]}, range, before(i));
+  for (std::size_t right = 1; right < x.size(); ++right) check_neighbours(x, v, right, range, before(right));
 }
 
 }  // namespace cradle::tools

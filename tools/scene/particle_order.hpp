@@ -30,16 +30,14 @@ struct ListedParticles {
   DecimalColumn x, v, m;
 };
 
-/// A particle of a list.
-struct Listed {
-  std::string_view x, v;
-};
-
-/// Throws Error unless neighbours are in order, and apart in the working precision if they are not at one place. Those
-/// at one place must not approach: whether one of them collides before with a third one would be open.
-void check_neighbours(const Listed& left, const Listed& right, const NumberRange& range, const Place& place);
+/// Throws Error unless particle `right` of a list and the one before it are in order, and apart in the working
+/// precision if they are not at one place. Those at one place must not approach: whether one of them collides before
+/// with a third one would be open.
+void check_neighbours(const DecimalColumn& x, const DecimalColumn& v, std::size_t right, const NumberRange& range,
+                      const Place& place);
 
 /// The same of all neighbours; `before` is the place of what is said of a particle and the one before it.
-void check_order(const ListedParticles& of, const Run& run, const std::function<Place(std::size_t)>& before);
+void check_order(const DecimalColumn& x, const DecimalColumn& v, const Run& run,
+                 const std::function<Place(std::size_t)>& before);
 
 }  // namespace cradle::tools

@@ -7,8 +7,6 @@
 
 #include "cradle/tools/commands/commands.hpp"
 #include "cradle/tools/proof/replicas.hpp"
-#include "cradle/tools/support/atomic_file.hpp"
-#include "cradle/tools/support/interrupt.hpp"
 
 namespace cradle::tools {
 

@@ -8,7 +8,6 @@
 #include <thread>
 
 #include "cradle/tools/commands/commands.hpp"
-#include "cradle/tools/commands/listing.hpp"
 #include "cradle/tools/ensemble/state.hpp"
 #include "cradle/tools/result/reader.hpp"
 #include "cradle/tools/setup/read_scene.hpp"

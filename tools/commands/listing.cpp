@@ -1,4 +1,4 @@
-#include "cradle/tools/commands/listing.hpp"
+#include "cradle/tools/commands/commands.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
 
 #include <fmt/format.h>

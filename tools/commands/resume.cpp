@@ -3,8 +3,6 @@
 #include "cradle/tools/commands/study.hpp"
 #include "cradle/tools/ensemble/ensemble_store.hpp"
 #include "cradle/tools/store/run_files.hpp"
-#include "cradle/tools/support/atomic_file.hpp"
-#include "cradle/tools/support/interrupt.hpp"
 
 namespace cradle::tools {
 

@@ -6,8 +6,6 @@
 
 #include "cradle/tools/commands/commands.hpp"
 #include "cradle/tools/store/run_files.hpp"
-#include "cradle/tools/support/atomic_file.hpp"
-#include "cradle/tools/support/interrupt.hpp"
 #include "cradle/tools/support/threads.hpp"
 #include "cradle/tools/theory/cost.hpp"
 

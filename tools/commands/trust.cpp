@@ -7,8 +7,6 @@
 #include <functional>
 
 #include "cradle/tools/commands/commands.hpp"
-#include "cradle/tools/support/atomic_file.hpp"
-#include "cradle/tools/support/interrupt.hpp"
 
 namespace cradle::tools {
 

@@ -5,7 +5,6 @@
 #include <cstdio>
 
 #include "cradle/tools/commands/commands.hpp"
-#include "cradle/tools/support/atomic_file.hpp"
 
 namespace cradle::tools {
 

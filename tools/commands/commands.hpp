@@ -134,6 +134,8 @@ struct OutputOptions {
   /// The place, or this one if none is given.
   std::string output_or(const std::string& standard) const { return output.empty() ? standard : output; }
   Force force() const { return forced ? Force::yes : Force::no; }
+  /// Claims the file. Throws Error unless the result of this command may replace what is there.
+  FileClaim claim(const std::string& file, const std::string& command, const Scene* scene) const;
 };
 /// `what` describes -o: "result file (default: ...)".
 void add_output_options(Command& command, OutputOptions& options, const std::string& what, Needed needed = Needed::no);

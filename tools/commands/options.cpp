@@ -216,6 +216,12 @@ Scene CommonOptions::read() const {
   return read;
 }
 
+FileClaim OutputOptions::claim(const std::string& file, const std::string& command, const Scene* scene) const {
+  FileClaim claim(file);
+  check_overwrite(file, command, scene, force());
+  return claim;
+}
+
 void put_result(const Result& result, const std::string& output, const std::string& text, bool quiet) {
   write_or_keep(result, output);
   fmt::print("{}", text);

@@ -11,8 +11,10 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "cradle/tools/ensemble/ensemble.hpp"
 #include "cradle/tools/result/result.hpp"
 #include "cradle/tools/scene/scene.hpp"
 #include "cradle/tools/store/overwrite.hpp"
@@ -65,9 +67,9 @@ class Command {
   void does(Action action);
   /// Makes the arguments of the command, which `run` gets when the command is chosen. The caller binds options to their
   /// members.
-  template <class Arguments> Arguments& runs(Exit (*run)(const Arguments&)) {
+  template <class Arguments> Arguments& runs(std::function<Exit(const Arguments&)> run) {
     const auto arguments = std::make_shared<Arguments>();
-    does([arguments, run] { return run(*arguments); });
+    does([arguments, run = std::move(run)] { return run(*arguments); });
     return *arguments;
   }
 
@@ -157,6 +159,21 @@ void add_common_options(Command& command, CommonOptions& options);
 /// how it ended. `announcement`: for the user, before the run.
 Exit run_command(RunFiles& files, const std::string& output, const RunningOptions& options, Interrupt& interrupt,
                  const std::string& announcement = "");
+
+/// The most replicas, and the highest number of one: float64 counts exactly up to here.
+inline constexpr std::uint64_t most_replicas = std::uint64_t{1} << 53;
+
+struct StudyPlan {
+  Study study;
+  EnsembleOptions options;
+  std::string output;
+  std::string note = {};  // for the user
+};
+
+/// What `ensemble`, `sweep` and `resume` share: runs the replicas of the plan that its output does not have yet,
+/// reports how they ended, and returns the exit status. Under MPI every rank makes the plan; an error in it is reported
+/// once.
+Exit run_study_command(bool quiet, const std::function<StudyPlan()>& make_plan);
 
 /// Writes what a command has made, then prints `text` and, unless it is to be quiet, the name of the file.
 void put_result(const Result& result, const std::string& output, const std::string& text, bool quiet);

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <memory>
 
-#include "cradle/tools/commands/study.hpp"
+#include "cradle/tools/commands/commands.hpp"
 #include "cradle/tools/ensemble/sweep.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
 #include "cradle/tools/theory/cost.hpp"

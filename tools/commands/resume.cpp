@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "cradle/tools/commands/study.hpp"
+#include "cradle/tools/commands/commands.hpp"
 #include "cradle/tools/ensemble/ensemble_store.hpp"
 #include "cradle/tools/store/run_files.hpp"
 

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "cradle/core/theory/wet_zone.hpp"
-#include "cradle/tools/scene/particle_order.hpp"
+#include "cradle/tools/scene/checks.hpp"
 
 namespace cradle::tools {
 namespace {

@@ -1,6 +1,5 @@
 // The initial states: what a scene says of its particles, and what the program needs to know of each state, one row per
-// state. A new one is a class in core/initial/, its name and row here, and its lines in tools/setup/initial_state.hpp,
-// where scenes become particles; its keys are members here and rows in fields.cpp (core/README.md).
+// state. How a state is added is on the page of core/initial.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,8 @@
 // toml++ parses and reports where each value begins; literals are taken from the text at that place.
 #include "cradle/tools/scene/source.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <charconv>
 #include <optional>
@@ -183,7 +185,7 @@ void replace_item(Entries& entries, const Place& place, std::string_view text) {
   if (error != std::errc() || end != index.data() + index.size() || k >= items.size())
     throw Error(place, "not an item of the list", describe(entry->second),
                 items.empty() ? "give the whole list, " + array
-                              : "give " + array + "[0] to " + array + "[" + std::to_string(items.size() - 1) + "]");
+                              : fmt::format("give {0}[0] to {0}[{1}]", array, items.size() - 1));
   auto given = assigned(text, place);
   items[k] = given ? std::move(given->begin()->second) : Value{Value::Kind::text, std::string(text), {}, place};
   items[k].place = {place.source, 0, array};
@@ -202,8 +204,7 @@ std::string describe(const Value& value) {
   case Value::Kind::text:
     return '"' + excerpt(value.text) + '"';
   case Value::Kind::array:
-    return value.items.size() == 1 ? "an array of 1 value"
-                                   : "an array of " + std::to_string(value.items.size()) + " values";
+    return fmt::format("an array of {} value{}", value.items.size(), value.items.size() == 1 ? "" : "s");
   case Value::Kind::table:
     return "a table";
   case Value::Kind::date:

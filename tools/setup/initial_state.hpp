@@ -93,19 +93,6 @@ inline Displacement displacement_of(const Initial& initial) {
   });
 }
 
-template <Real T>
-std::shared_ptr<const cradle::Particles<T>> cold_particles(const Initial& initial, Displacement displacement) {
-  const auto all = static_cast<ParticleIndex>(initial.particles), hot = static_cast<ParticleIndex>(initial.hot);
-  const cradle::HotPlace place = hot_place(initial);
-  const ParticleIndex first = first_hot(place, all, hot);
-  MassPattern<T> masses = mass_pattern<T>(initial);
-  HotParticles<T> moving = hot == 1
-                               ? kicked(first, number<T>(initial.speed))
-                               : heated(first, hot, number<T>(initial.energy), masses, initial.seed, initial.replica);
-  return std::make_shared<Cold<T>>(all, number<T>(initial.spacing), place, std::move(moving), std::move(displacement),
-                                   std::move(masses), initial.density_exponent.value);
-}
-
 /// The distance of the first or the last particle to the wall beside it, and its closing speed, from the scene's
 /// decimals: a difference of rounded positions may have no correct digit. They are decimals, exact or with so many
 /// digits that they are rounded to the same number in the working precision. Without a closing speed the particle's
@@ -135,7 +122,16 @@ std::shared_ptr<const cradle::Particles<T>> particles_without_walls(const Initia
                                      momentum ? std::optional<T>(from_text<T>(*momentum)) : std::nullopt,
                                      std::move(between));
   }
-  if (initial.type == InitialType::cold) return cold_particles<T>(initial, displacement);
+  if (initial.type == InitialType::cold) {
+    const auto all = static_cast<ParticleIndex>(initial.particles), hot = static_cast<ParticleIndex>(initial.hot);
+    const ParticleIndex first = first_hot(hot_place(initial), all, hot);
+    MassPattern<T> masses = mass_pattern<T>(initial);
+    HotParticles<T> moving = hot == 1
+                                 ? kicked(first, number<T>(initial.speed))
+                                 : heated(first, hot, number<T>(initial.energy), masses, initial.seed, initial.replica);
+    return std::make_shared<Cold<T>>(all, number<T>(initial.spacing), hot_place(initial), std::move(moving),
+                                     displacement, std::move(masses), initial.density_exponent.value);
+  }
   if (initial.type == InitialType::ring || initial.type == InitialType::gas) {
     using std::sqrt;
     const auto count = static_cast<ParticleIndex>(initial.particles);

@@ -228,10 +228,8 @@ ListedParticles parse_list(std::istream& csv, const std::string& file_name, cons
                 "give a line x,v or x,v,m and then one line per particle");
   const bool sums = !reader.listed().gap.empty();
   ListedParticles particles = placed(reader.listed(), length, {file_name});
-  if (sums)
-    check_order(particles.x, particles.v, run, [&](std::size_t i) {
-      return Place{file_name, 0, fmt::format("gap {}", i)};
-    });
+  const auto before = [&](std::size_t i) { return Place{file_name, 0, fmt::format("gap {}", i)}; };
+  if (sums) check_order(particles.x, particles.v, run, before);
   return particles;
 }
 

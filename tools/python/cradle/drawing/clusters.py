@@ -45,12 +45,6 @@ def followed(heaviest):
             if np.shape(values) == order.shape}, broken
 
 
-def with_gaps(time, values, broken):
-    """A line that is interrupted when another cluster takes over."""
-    at = np.flatnonzero(broken)
-    return np.insert(time, at, time[at]), np.insert(values.astype(float), at, np.nan)
-
-
 def draw_clusters(result, units, panels):
     force = result.table("force")
     tracks, broken = followed(result.means["heaviest"])
@@ -91,7 +85,9 @@ def draw_tracks(ax, time, values, broken, width):
     late = np.nan_to_num(np.abs(values[len(values) // 2:]))
     wide = np.argsort(-late.mean(axis=0), kind="stable")  # the smaller swing on top
     for k in wide:
-        ax.plot(*with_gaps(time, values[:, k], broken[:, k]), color=(BLUE, ORANGE)[k], lw=width)
+        at = np.flatnonzero(broken[:, k])  # where another cluster takes over the line is interrupted
+        ax.plot(np.insert(time, at, time[at]), np.insert(values[:, k].astype(float), at, np.nan),
+                color=(BLUE, ORANGE)[k], lw=width)
     ax.margins(x=0)
 
 

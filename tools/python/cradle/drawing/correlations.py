@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from .averages import draw_points
+from .measured import draw_points
 from .cooling import ring_of
 from .style import BLUE, ORANGE, note
 

@@ -22,12 +22,6 @@ def one_falls(result):
     return "potential_energy" in result.means and len(result.scene["initial"].get("x", ())) == 1
 
 
-def parted(path, length):
-    """The points (t, x) of a path, which ends where it crosses the seam of a ring and begins anew behind it."""
-    seam = np.flatnonzero(np.abs(np.diff(path[:, 1])) > length / 2) + 1
-    return np.insert(path, seam, np.nan, axis=0)
-
-
 def draw_particles(result, units, panels):
     """Paths; energy and collisions, at a collapse collisions alone; and how intervals (from events) or gaps shrink."""
     shrinking = {"interval", "closing_speed"} <= result.events.keys()
@@ -43,7 +37,9 @@ def draw_particles(result, units, panels):
         for particle, x in zip(snapshot["index"], snapshot["x"]):
             paths.setdefault(int(particle), []).append((snapshot["time"], x))
     for (particle, path), colour in shaded(sorted(paths.items())):
-        path = parted(np.array(path), result.setting("initial", "length", 0.0) or np.inf)
+        path = np.array(path)
+        seam = np.flatnonzero(np.abs(np.diff(path[:, 1])) > (result.setting("initial", "length", 0.0) or np.inf) / 2)
+        path = np.insert(path, seam + 1, np.nan, axis=0)  # ends at the seam of a ring and begins anew behind it
         axes[0].plot(*(path / (units.t, units.x)).T, "o-" if len(path) <= MARKED else "-", ms=3,
                      color=colour, label=f"particle {particle}")
     for name, line in (("front_left", ":"), ("front_right", "--")):

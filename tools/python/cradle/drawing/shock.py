@@ -1,7 +1,4 @@
-"""Figs. 2 and 6: velocities, mean velocity and density of a shock at several times.
-
-If particles merge, the density of mass is drawn, not that of particles.
-"""
+"""Figs. 2 and 6: velocities, mean velocity and density (of mass, if particles merge) of a shock at several times."""
 import numpy as np
 
 from .structure import core_of

@@ -1,6 +1,5 @@
-"""Sweeps: results against the parameters that were varied. Rings: the energies of all points in one panel, and their
-ratio to the sticky one's. Wet shocks: the width of the interaction zone (Fig. 8). Every number of the summary against
-what was varied; of rings if that is one key or a grid of two."""
+"""Sweeps: energies of rings beside the sticky one's; the width of the interaction zone of wet shocks (Fig. 8); every
+number of the summary against what was varied, of rings if that is one key or a grid of two."""
 import numpy as np
 
 from . import beyond

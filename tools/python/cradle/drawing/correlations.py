@@ -10,7 +10,7 @@ import math
 import numpy as np
 
 from .measured import draw_points
-from .cooling import ring_of
+from .energy import ring_of
 from .style import BLUE, ORANGE, note
 
 PANELS = {"msd": "mean-square displacement ($l^2$)", "vacf": r"$\langle v(0)\,v(t)\rangle$ ($l^2/t^2$)"}

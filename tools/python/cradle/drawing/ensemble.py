@@ -2,7 +2,7 @@
 import numpy as np
 
 from ..result import fronts
-from .cooling import cooled, cools, draw_laws, ring_of
+from .energy import cooled, cools, draw_laws, ring_of
 from .shock import draw_slope
 from .style import BLUE, GREY, ORANGE, beside, note, shaded, thinned
 

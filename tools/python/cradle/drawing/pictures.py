@@ -12,16 +12,16 @@ from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormat
 
 from ..errors import BAD_FILE, Error
 from ..files import whole
-from . import (beyond, clusters, cold, cooling, correlations, energy, ensemble, measured, particles, proof, scenarios,
-               shock, spacetime, sticky, structure, sweep, walls, zone)
+from . import (beyond, clusters, cold, correlations, energy, ensemble, measured, particles, proof, scenarios, shock,
+               sticky, sweep, walls, zone)
 from .style import Panels, Units, style
 from .theory import Theory
 
 # The first of these that has something to show is all there is.
 ALONE = (proof.pictures, scenarios.onsets, walls.shaken, cold.pictures, walls.pictures, scenarios.pictures,
-         sweep.pictures, ensemble.pictures, spacetime.pictures, particles.pictures)
-TOGETHER = (beyond.pictures, sticky.pictures, cooling.pictures, zone.pictures, clusters.pictures, shock.pictures,
-            structure.pictures, energy.pictures)
+         sweep.pictures, ensemble.pictures, particles.pictures)
+TOGETHER = (beyond.pictures, sticky.pictures, energy.cooling, zone.pictures, clusters.pictures, shock.pictures,
+            shock.structures, energy.pictures)
 LAST = (measured.pictures, correlations.pictures, measured.places, proof.certificates)  # behind the others
 PAPER = "Equations and sections: Zaburdaev and Herminghaus, Phys. Rev. E 75, 031304 (2007)"
 CITED = re.compile(r"Eqs?\. \(|\(1?\d\)(,|$)|^section [IV]")

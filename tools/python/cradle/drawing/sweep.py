@@ -3,7 +3,7 @@ number of the summary against what was varied, of rings if that is one key or a 
 import numpy as np
 
 from . import beyond
-from .cooling import cooled, sticky_law
+from .energy import cooled, sticky_law
 from .style import BLUE, GREY, ORANGE, distinct, note, plt, shades
 from .zone import model_width
 

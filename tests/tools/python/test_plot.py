@@ -11,7 +11,7 @@ import numpy as np
 import cradle
 import small
 from cradle import program
-from cradle.drawing import cold, correlations, particles, pictures, style
+from cradle.drawing import cold, measured, particles, pictures, style
 
 
 class Pictures(small.Case):
@@ -43,7 +43,7 @@ class Pictures(small.Case):
             self.assertEqual(list(inspect.signature(function).parameters), ["result", "axes", "theory"])
 
     def test_the_exact_displacement_is_that_of_jepsen(self):
-        displacement, exact = correlations.displacement, correlations.exact
+        displacement, exact = measured.displacement, measured.exact_correlations
         for time, square in ((1, 0.5297), (3, 2.170), (5, 3.787), (10, 7.788), (20, 15.77)):
             self.assertAlmostEqual(displacement(time) / square, 1, delta=2e-4)
         self.assertAlmostEqual(displacement(1e-4), 1e-8, delta=2e-12)

@@ -1,7 +1,7 @@
-"""Cold gases that are set in motion, beside closed forms (derived in bench/results/classics.md): a blast, its fronts and
-profiles over x/R (Euler's equations for gamma = 3; arXiv:2010.15868); dominoes of two masses, when each heavy particle
-is first hit, and t = n - 1 + 1/(2c), c = m/(m + mu), for the mass ratios whose front is ballistic (arXiv:2605.16125); a
-splash, whose outermost particle is kicked: front and energy at x > 0, with exponents for every point of a sweep."""
+"""Cold gases that are set in motion, beside closed forms (derived in bench/results/classics.md). A blast: fronts, and
+profiles over x/R (Euler's equations for gamma = 3; arXiv:2010.15868). Dominoes of two masses: when each heavy particle
+is first hit, t = n - 1 + 1/(2c), c = m/(m + mu), if the front is ballistic (arXiv:2605.16125). A splash, the outermost
+particle kicked: front and energy at x > 0, with exponents for every point of a sweep."""
 from fractions import Fraction
 
 import numpy as np

@@ -1,5 +1,5 @@
-"""Energy against time: Fig. 4, with the number of collisions; and free cooling on a ring beside the asymptotic law of the
-sticky gas. For independent velocities of variance s^2 and mean spacing a (m = 1)
+"""Energy against time: Fig. 4, with the number of collisions; and free cooling on a ring beside the asymptotic law of
+the sticky gas. For independent velocities of variance s^2 and mean spacing a (m = 1)
     E/N = 0.221376226650747359 s^2 tau^(-2/3),  clusters/N = 1.32825735990448415 tau^(-2/3),  tau = s t/a,
 exact for t -> infinity in the sticky gas (Burgers equation with white noise); Haff's law where it is predicted."""
 import numpy as np

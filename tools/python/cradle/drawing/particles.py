@@ -1,6 +1,6 @@
-"""A few particles: their paths, and how gaps or the intervals between collisions shrink, at an inelastic collapse against
-the time that is left to it, in which everything is a power. Of those that merge or pass through each other (Fig. 5)
-paths in space and time, wider for heavier ones, and Newton's cradle: the paths of the single particles in clusters."""
+"""A few particles: their paths, and how gaps or the intervals between collisions shrink, at an inelastic collapse
+against the time that is left to it, in which everything is a power. Those that merge or pass (Fig. 5): paths in space
+and time, wider for heavier ones, and Newton's cradle: the paths of the single particles in the clusters."""
 import numpy as np
 
 from .style import BLUE, GREY, ORANGE, RED, beside, shaded, shades

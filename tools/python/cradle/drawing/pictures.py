@@ -12,17 +12,17 @@ from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormat
 
 from ..errors import BAD_FILE, Error
 from ..files import whole
-from . import (beyond, clusters, cold, correlations, energy, ensemble, measured, particles, proof, scenarios, shock,
-               sticky, sweep, walls, zone)
+from . import (beyond, clusters, cold, energy, ensemble, measured, particles, proof, scenarios, shock, sticky, sweep,
+               walls)
 from .style import Panels, Units, style
 from .theory import Theory
 
 # The first of these that has something to show is all there is.
 ALONE = (proof.pictures, scenarios.onsets, walls.shaken, cold.pictures, walls.pictures, scenarios.pictures,
          sweep.pictures, ensemble.pictures, particles.pictures)
-TOGETHER = (beyond.pictures, sticky.pictures, energy.cooling, zone.pictures, clusters.pictures, shock.pictures,
-            shock.structures, energy.pictures)
-LAST = (measured.pictures, correlations.pictures, measured.places, proof.certificates)  # behind the others
+TOGETHER = (beyond.pictures, sticky.pictures, energy.cooling, clusters.pictures, shock.pictures, shock.structures,
+            energy.pictures)
+LAST = (measured.pictures, proof.certificates)  # behind the others
 PAPER = "Equations and sections: Zaburdaev and Herminghaus, Phys. Rev. E 75, 031304 (2007)"
 CITED = re.compile(r"Eqs?\. \(|\(1?\d\)(,|$)|^section [IV]")
 WIDE = 12  # characters of a title per inch

@@ -1,5 +1,5 @@
-"""What is proved or compared at several precisions: the restitutions at which words of collapse exist and are stable; how
-a threshold was closed in; the digits that runs of rising precision share with the last one; a proof in time."""
+"""What is proved or compared at several precisions: the restitutions at which words of collapse exist and are stable;
+how a threshold was closed in; the digits that runs of rising precision share with the last one; a proof in time."""
 import numpy as np
 
 from .style import BLUE, GREEN, GREY, ORANGE, beside, note, plt

@@ -1,5 +1,5 @@
-"""A shock at several times, Figs. 2 and 6: velocities, mean velocity and density (of mass, if particles merge). Of a core
-that positions cannot resolve, Fig. 3: four nested zooms, drawn from the gaps."""
+"""A shock at several times, Figs. 2 and 6: velocities, mean velocity and density (of mass, if particles merge). Of a
+core that positions cannot resolve, Fig. 3: four nested zooms, drawn from the gaps."""
 import numpy as np
 
 from .style import BLUE, GREY, RED, beside, note, plt, thinned, times_of

@@ -3,9 +3,9 @@ number of the summary against what was varied, of rings if that is one key or a 
 import numpy as np
 
 from . import beyond
+from .clusters import model_width
 from .energy import cooled, sticky_law
 from .style import BLUE, GREY, ORANGE, distinct, note, plt, shades
-from .zone import model_width
 
 SPEED, LOSS = "initial.speed", "law.loss"
 BESIDE = ("_error", "_replicas")  # what goes with a number of the summary
@@ -108,7 +108,6 @@ def draw_widths(result, keys, panels):
     loss = keys.get(LOSS, np.full(len(width), first.setting("law", "loss", np.nan)))
     spacing = first.setting("initial", "spacing", 1.0)
     error = error_of(result, "zone_width")
-    error = np.zeros(len(width)) if error is None else error
     ax = panels(figsize=(5.2, 4.2))
     other = ax.twiny()
     for axes, values, fixed, model, given, label, mark, line, colour in (

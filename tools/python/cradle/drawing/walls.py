@@ -1,6 +1,6 @@
-"""Between walls. At rest: the positions of a gas, its energies, and the energy from the walls (Du, Li and Kadanoff, Phys.
-Rev. Lett. 74, 1268, 1995). Shaken (formulas: core/laws/README.md): the height of one ball once a period against the
-amplitude, with the first period doubling; that of a column of beads against X = N (1 - r), beside nearly elastic ones.
+"""Between walls. At rest: the positions of a gas, its energies, and the energy from the walls (Du, Li and Kadanoff,
+Phys. Rev. Lett. 74, 1268, 1995). Shaken (formulas: core/laws/README.md): the height of one ball once a period against
+the amplitude, with the first period doubling; of a column of beads against X = N (1 - r), beside nearly elastic ones.
 """
 import numpy as np
 

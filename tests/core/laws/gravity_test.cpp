@@ -1,4 +1,4 @@
-// Gravity: one ball against closed forms (its bounces to the last bit: precision/gravity_test.cpp); columns in free
+// Gravity: one ball against closed forms (its bounces to the last bit: precision/wall_gaps_test.cpp); columns in free
 // fall, which are those without gravity to the last bit; frames and mirrors; the account of energy; a gas over a
 // thermal floor; what is refused. (In gaps and positions against a gas in 100 digits: precision/exact_gas_test.cpp.)
 

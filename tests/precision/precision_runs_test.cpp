@@ -21,7 +21,6 @@
 
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/core/slow_loop.hpp"
-#include "cradle/tests/core/three_collapses.hpp"
 #include "cradle/tests/precision/every_scalar.hpp"
 #include "cradle/tests/precision/reference.hpp"
 

@@ -80,14 +80,6 @@ TEST_P(Thresholds, NoneIsReportedThatIsNone) {
     }
 }
 
-TEST(CollapseProof, TheFindingOfARestitutionJustAboveTheLimit) {
-  for (const double e : {.0717968, .071797}) {
-    auto run = gap_run(three_particles(), Inelastic<double>(e), stop);
-    EXPECT_EQ(run.advance(1e6), Status::exhausted) << "it parts after thousands of collisions";
-    EXPECT_FALSE(run.collapse().settled);
-  }
-}
-
 // A fourth particle reaches the three before they collapse at t = 12/7, or does not.
 TEST(CollapseProof, OthersMayNotComeInTime) {
   for (const double speed : {-30., -1.}) {

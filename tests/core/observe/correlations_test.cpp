@@ -6,8 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "cradle/tests/core/between_walls.hpp"
-#include "cradle/tests/core/observe/placed.hpp"
-#include "cradle/tests/core/saved.hpp"
+#include "cradle/tests/core/compare.hpp"
 
 namespace cradle::test::correlations_test {
 
@@ -68,16 +67,6 @@ TEST(Correlator, TakesAllPairsOfSamplesThatItsLevelsHold) {
       EXPECT_NEAR(found[k].displacement.mean, squares / pairs, 1e-12 * squares / pairs) << lags[k];
       EXPECT_NEAR(found[k].velocity.mean, products / pairs, 1e-12) << lags[k];
     }
-  }
-}
-
-TEST(Correlator, OfFreeFlightsIsExact) {
-  Correlator correlator(2, 50);
-  for (int k = 0; k <= 60; ++k) correlator.add({0.5 * k, -0.25 * k}, {0.5, -0.25});
-  for (std::size_t k = 0; const auto& [displacement, velocity] : correlator.correlations()) {
-    const auto t = static_cast<double>(correlator.lags()[k++]);
-    EXPECT_EQ(velocity.mean, (0.25 + 0.0625) / 2);
-    EXPECT_DOUBLE_EQ(displacement.mean, velocity.mean * t * t);
   }
 }
 

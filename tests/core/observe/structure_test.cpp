@@ -1,6 +1,6 @@
 // Structure factors and pair distributions. Proves: sine and cosine to 2^-51, exact at quarters; both measures against
-// sums over all particles and pairs in the plainest way; lattices, two particles; means over samples with the errors of
-// batch means, from a saved state too.
+// sums over all particles and pairs in the plainest way; two particles; means over samples with the errors of batch
+// means, from a saved state too.
 #include "cradle/core/observe/structure.hpp"
 
 #include <gtest/gtest.h>
@@ -9,9 +9,8 @@
 #include <random>
 
 #include "cradle/core/observe/batch_means.hpp"
+#include "cradle/tests/core/compare.hpp"
 #include "cradle/tests/core/fixtures.hpp"
-#include "cradle/tests/core/observe/placed.hpp"
-#include "cradle/tests/core/saved.hpp"
 
 namespace cradle::test::structure_test {
 
@@ -85,14 +84,6 @@ TEST(StructureFactor, IsThatOfASumOverAllParticles) {
     // Phases are right to 2^-52 of n turns; 50 particles.
     EXPECT_NEAR(S[w], static_cast<double>(std::norm(sum) / squares), 1e-11) << waves[w];
   }
-}
-
-TEST(StructureFactor, OfALatticeIsItsReciprocal) {
-  std::vector<double> x, v(32);
-  for (int j = 0; j < 32; ++j) x.push_back(0.5 * j + 0.1);
-  const auto S = StructureFactor(16, 128)(placed(x, v, std::vector<double>(32, 2)), *list(x, v), 0.);
-  const auto waves = octave_steps(128);
-  for (std::size_t w = 0; w < waves.size(); ++w) EXPECT_NEAR(S[w], waves[w] % 32 == 0 ? 32 : 0, 1e-12) << waves[w];
 }
 
 TEST(PairDistribution, IsThatOfAllPairsOneByOne) {

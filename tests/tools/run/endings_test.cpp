@@ -185,24 +185,6 @@ std::string random_scene(std::uint64_t seed) {
   return text;
 }
 
-// The time up to which collisions are certain is not after one that should or should not have come.
-TEST_F(Endings, CollisionsAcrossTheEndAreUncertainFromTheLastOneOn) {
-  const auto uncertain_from = [&](const std::string& scene, const std::string& options = "") {
-    return tools::attribute<double>(result_of(scene, options).attributes, "uncertain_from", "");
-  };
-  // Makes 3 collisions; the fourth is at 1.2e21.
-  EXPECT_LT(uncertain_from("law = {type = 'inelastic', restitution = 0.9999999999}\n"
-                           "run = {start = -7.25, until = 1.8e21}\n"
-                           "initial = {type = 'list', x = [0, 2, 3.5, 5, 6], v = [0.5, 1, 1, 2, 0.5]}\n"),
-            1.2e21);
-  // Makes none; the first is at 1.
-  const std::string pair = "law = {type = 'inelastic', restitution = 0.5}\nrun.until = 0.9999999999999999\n"
-                           "initial = {type = 'list', x = [0, 1], v = [1, 0]}\n";
-  EXPECT_EQ(uncertain_from(pair), 0);
-  // The double nearest to 0.1 is later than that.
-  EXPECT_EQ(uncertain_from(pair, "--set run.start=0.1 --set run.until=1.0999999999999999"), std::nextafter(0.1, 0));
-}
-
 TEST_F(Endings, NoRunStaysAtOneTime) {
   const char* wanted = std::getenv("CRADLE_ENDINGS");
   const int scenes = wanted != nullptr ? std::atoi(wanted) : 40;

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include "cradle/tests/tools/faults.hpp"
 #include "cradle/tests/tools/program.hpp"
-#include "cradle/tests/tools/result/small_files.hpp"
 #include "cradle/tools/result/difference.hpp"
 #include "cradle/tools/result/growing_tables.hpp"
 #include "cradle/tools/result/writer.hpp"

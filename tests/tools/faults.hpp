@@ -1,8 +1,11 @@
 #pragma once
-// Random damage to the bytes of a file.
+// What happens to files: random damage to their bytes, a full disk.
+
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <array>
+#include <csignal>
 #include <cstdint>
 #include <cstdlib>
 #include <random>
@@ -72,6 +75,22 @@ class Mutator {
   }
 
   std::mt19937_64 random_;
+};
+
+// During its lifetime files cannot grow beyond 10 kB: further writes fail.
+class SmallFiles {
+ public:
+  SmallFiles() {
+    std::signal(SIGXFSZ, SIG_IGN);
+    ::getrlimit(RLIMIT_FSIZE, &before_);
+    rlimit small = before_;
+    small.rlim_cur = 10000;
+    ::setrlimit(RLIMIT_FSIZE, &small);
+  }
+  ~SmallFiles() { ::setrlimit(RLIMIT_FSIZE, &before_); }
+
+ private:
+  rlimit before_{};
 };
 
 }  // namespace cradle::tests

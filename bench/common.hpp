@@ -1,5 +1,7 @@
 #pragma once
-// Shared by the benchmarks: the clock, the initial states of the published collision counts, and their check.
+// Shared by the benchmarks: the clock, the initial states of the published collision counts, and their check; and what
+// the programs of Google Benchmark have in common. (Debian's prints "library was built as DEBUG": that concerns its own
+// timers, not the measured code.)
 
 #include <ctime>
 
@@ -11,6 +13,8 @@
 #include <string>
 #include <utility>
 #include <vector>
+
+#include <benchmark/benchmark.h>
 
 #include "cradle/core/base/counter_rng.hpp"
 #include "cradle/core/initial/list.hpp"
@@ -69,6 +73,30 @@ inline void check(const std::string& scene, const std::string& engine, double ti
                scene.c_str(), engine.c_str(), static_cast<unsigned long long>(found), time,
                static_cast<unsigned long long>(expected));
   std::exit(1);
+}
+
+// ---- Google Benchmark
+
+// Enters a measurement that states the time of its iterations.
+template <class Measure> auto* enter_timed(const std::string& name, const Measure& measure) {
+  return benchmark::RegisterBenchmark(name.c_str(), measure)->UseManualTime()->Unit(benchmark::kMillisecond);
+}
+
+// Collisions of all iterations.
+inline void count(benchmark::State& state, std::uint64_t collisions) {
+  using benchmark::Counter;
+  state.counters["collisions"] = Counter(static_cast<double>(collisions), Counter::kAvgIterations);
+  state.counters["collisions/s"] = Counter(static_cast<double>(collisions), Counter::kIsRate);
+}
+
+// The main function: makes those of the measurements entered that the command line chooses.
+template <class EnterAll> int measure_all(int argc, char** argv, const EnterAll& enter_all) {
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+  enter_all();
+  benchmark::RunSpecifiedBenchmarks();
+  benchmark::Shutdown();
+  return 0;
 }
 
 }  // namespace bench

@@ -20,13 +20,13 @@
 #include <string>
 #include <vector>
 
+#include "common.hpp"
 #include "cradle/core/chains/gap_chain.hpp"
 #include "cradle/core/chains/position_chain.hpp"
 #include "cradle/core/engine/simulation.hpp"
 #include "cradle/core/ensemble/tbb_executor.hpp"
 #include "cradle/core/laws/law.hpp"
 #include "cradle/core/parallel/segments.hpp"
-#include "measured.hpp"
 #include "twins/queues.hpp"
 #include "twins/time_slots.hpp"
 

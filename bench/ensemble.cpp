@@ -29,24 +29,26 @@
 #include <utility>
 #include <vector>
 
+#include "common.hpp"
 #include "cradle/core/base/counter_rng.hpp"
 #include "cradle/core/chains/gap_chain.hpp"
 #include "cradle/core/engine/simulation.hpp"
 #include "cradle/core/initial/gas.hpp"
 #include "cradle/tools/ensemble/ensemble.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
-#include "measured.hpp"
 
 namespace {
 
 namespace tools = cradle::tools;
 
-void enter(const std::string& name, int replicas, const std::function<void()>& all) {
+// With the time of a replica beside that of all.
+auto* enter(const std::string& name, int replicas, const std::function<void()>& all) {
   const auto measure = [=](benchmark::State& state) {
+    using benchmark::Counter;
     for (auto iteration : state) all();
-    state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations()) * replicas);
+    state.counters["each"] = Counter(replicas, Counter::kIsIterationInvariantRate | Counter::kInvert);
   };
-  benchmark::RegisterBenchmark(name.c_str(), measure)->UseRealTime()->Unit(benchmark::kMillisecond);
+  return benchmark::RegisterBenchmark(name.c_str(), measure)->Unit(benchmark::kMillisecond);
 }
 
 // ---- the program
@@ -58,7 +60,9 @@ void run_ensemble(const tools::Scene& scene, int replicas, unsigned threads) {
   options.replicas = {0, static_cast<std::uint64_t>(replicas)};
   options.threads = threads;
   options.progress = tools::ProgressLine::Show::never;
-  tools::run_ensemble(scene, options, file);
+  tools::Interrupt interrupt;
+  tools::OneProcess alone(interrupt);
+  tools::run_study(tools::ensemble_of(scene), options, file, alone);
   std::filesystem::remove(file);
 }
 
@@ -69,9 +73,11 @@ void enter_scene(const std::string& of, const tools::Scene& scene, int replicas)
       replica.initial.replica = static_cast<std::uint64_t>(k);
       benchmark::DoNotOptimize(tools::run_scene(replica, {tools::ProgressLine::Show::never}));
     }
-  });
+  })->UseRealTime();
   for (const unsigned threads : {1U, 2U})
-    enter(of + "/ensemble/" + std::to_string(threads), replicas, [=] { run_ensemble(scene, replicas, threads); });
+    enter(of + "/ensemble/" + std::to_string(threads), replicas, [=] {
+      run_ensemble(scene, replicas, threads);
+    })->UseRealTime();
 }
 
 // ---- many small systems
@@ -127,14 +133,7 @@ double engine_alone(int n, int replica, std::uint64_t& collisions) {
 void enter_small(int n) {
   const int replicas = 300'000 / (n + 10);
   const auto enter_each = [=](const std::string& name, const std::function<void()>& all) {
-    const auto measure = [=](benchmark::State& state) {
-      using benchmark::Counter;
-      for (auto iteration : state) all();
-      state.counters["each"] = Counter(replicas, Counter::kIsIterationInvariantRate | Counter::kInvert);
-    };
-    benchmark::RegisterBenchmark(("small/" + std::to_string(n) + "/" + name).c_str(), measure)
-        ->MeasureProcessCPUTime()
-        ->Unit(benchmark::kMillisecond);
+    enter("small/" + std::to_string(n) + "/" + name, replicas, all)->MeasureProcessCPUTime();
   };
   for (const auto& [name, run] : {std::pair{"plain", &plain_loop}, {"engine", &engine_alone}})
     enter_each(name, [=, run = run] {

@@ -14,12 +14,12 @@
 #include <memory>
 #include <string>
 
+#include "common.hpp"
 #include "cradle/core/chains/cluster_chain.hpp"
 #include "cradle/core/engine/simulation.hpp"
 #include "cradle/core/ensemble/tbb_executor.hpp"
 #include "cradle/core/initial/gas.hpp"
 #include "cradle/core/parallel/segments.hpp"
-#include "measured.hpp"
 #include "twins/merging.hpp"
 
 namespace {

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Picture of run time against error: plot_precision.py CSV OUT.png, with the CSV of bench_precision.
+"""Picture of run time against error: plot_precision.py JSON OUT.png, with the JSON of bench_precision.
 
 Panels: (a) three-particle collapse, (b) shock into the collapsed cluster, (c) time reversal, (d) speed on the long
 shock. One marker per representation, one colour per type; the line is the Pareto front: no other point is both faster
 and more accurate (by half a digit).
 Errors run from 1 (no digit is right) to 1e-200 on an axis that is linear in the square root of the digits.
 """
-import csv
+import json
 import sys
 
 import matplotlib.pyplot as plt
@@ -23,18 +23,21 @@ BARS = {"double": "double (16 digits)", "tuned_heap": "conventional double, tune
 MARKERS = {"gaps": "o", "absolute": "s"}
 DIGIT_TICKS = [0, 1, 5, 10, 16, 31, 50, 75, 100, 150, 200]
 # representation, type, offset of the label in points, alignment
-WIDE_LABELS = [("gaps", "double-double", -4, -13, "center"), ("gaps", "float128", 4, 11, "left"),
-               ("gaps", "mpfr 50", -9, -5, "right"), ("gaps", "mpfr 100", -9, -5, "right"),
+MPFR_LABELS = [("gaps", "mpfr 50", -9, -5, "right"), ("gaps", "mpfr 100", -9, -5, "right"),
                ("gaps", "mpfr 200", -9, -4, "right")]
+WIDE_LABELS = [("gaps", "double-double", -4, -13, "center"), ("gaps", "float128", 4, 11, "left"), *MPFR_LABELS]
 
 
 def read(path):
     """{(scene, representation, type): {(quantity, time): value}}"""
     found = {}
-    with open(path, newline="", encoding="utf-8") as file:
-        for row in csv.DictReader(file):
-            engine = found.setdefault((row["scene"], row["representation"], row["type"]), {})
-            engine[row["quantity"], row["t"]] = float(row["value"])
+    with open(path, encoding="utf-8") as file:
+        for run in json.load(file)["benchmarks"]:
+            *_, scene, representation, kind = run["name"].partition("/iterations")[0].split("/")
+            engine = found.setdefault((scene, representation, kind if kind in BARS else kind.replace("_", " ")), {})
+            for key, value in run.items():
+                quantity, _, time = key.partition("@")
+                engine[quantity, time] = value
     return found
 
 
@@ -51,11 +54,9 @@ def scatter(axes, points, unit, shown):
     for representation, kind, dx, dy, align in shown:
         axes.annotate(kind if representation == "gaps" else f"{kind}, absolute", points[representation, kind], (dx, dy),
                       ha=align, va="center", textcoords="offset points", fontsize=8.5, color="0.2")
-    axes.set_xscale("log")
     axes.set_yscale("function", functions=(lambda d: np.sqrt(np.maximum(d, 0)), lambda s: s ** 2))
     axes.set_yticks(DIGIT_TICKS, ["1" if d == 0 else f"$10^{{-{d}}}$" for d in DIGIT_TICKS])
-    axes.set_ylim(250, 0)
-    axes.set_xlabel(unit)
+    axes.set(xscale="log", xlabel=unit, ylim=(250, 0))
     axes.grid(color="0.92")
     axes.set_axisbelow(True)
 
@@ -67,30 +68,27 @@ def main(source, target):
     figure, ((a, b), (c, d)) = plt.subplots(2, 2, figsize=(12.4, 10.6))
 
     def points(scene, quantity, time="", cost=lambda values: values["ns_per_collision", ""]):
-        return {(representation, kind): (cost(values), -np.log10(max(values[quantity, time], 1e-240)))
+        return {(representation, kind): (cost(values), min(values[quantity, time], 240))
                 for (name, representation, kind), values in found.items()
                 if name == scene and (quantity, time) in values}
 
-    scatter(a, points("three", "time_error", cost=lambda v: v["ns_per_collision", ""] * v["collisions", ""] / 1e3),
+    scatter(a, points("three", "time_digits", cost=lambda v: v["ns_per_collision", ""] * v["collisions", ""] / 1e3),
             "microseconds for the whole run", [
                 ("gaps", "double", 2, -13, "center"), ("absolute", "double", -4, 12, "left"),
-                ("gaps", "double-double", -6, -10, "right"), ("gaps", "mpfr 50", -9, -5, "right"),
-                ("gaps", "mpfr 100", -9, -5, "right"), ("gaps", "mpfr 200", -9, -4, "right")])
-    a.set_title("(a) collapse time of three particles, against 12/7")
-    a.set_ylabel("relative error")
+                ("gaps", "double-double", -6, -10, "right"), *MPFR_LABELS])
+    a.set(title="(a) collapse time of three particles, against 12/7", ylabel="relative error")
 
     end = max((time for (name, *_), values in found.items() if name == "shock"
-               for quantity, time in values if quantity == "gap_error"), key=float)
-    scatter(b, points("shock", "gap_error", end), "nanoseconds per collision", [
+               for quantity, time in values if quantity == "gap_digits"), key=float)
+    scatter(b, points("shock", "gap_digits", end), "nanoseconds per collision", [
         ("gaps", "double", 2, -13, "center"), ("absolute", "double", 9, 0, "left"), *WIDE_LABELS])
     collisions = found["shock", "gaps", "double"]["collisions", ""]
     b.set_title(f"(b) median gap in the collapsed shock, N = 1000, t = {end},\n"
                 f"after {collisions / 1e6:.1f} million collisions")
 
-    scatter(c, points("reversal", "position_error"), "nanoseconds per collision", [
+    scatter(c, points("reversal", "position_digits"), "nanoseconds per collision", [
         ("gaps", "double", 2, -13, "center"), *WIDE_LABELS])
-    c.set_title("(c) positions of an elastic gas, there and back")
-    c.set_ylabel("error")
+    c.set(title="(c) positions of an elastic gas, there and back", ylabel="error")
 
     order = ["double", "tuned_heap", "indexed_heap"] + list(COLOURS)[1:]
     labels = []
@@ -106,14 +104,12 @@ def main(source, target):
                    hatch="////" if representation == "absolute" else None, edgecolor="white", lw=0)
             d.annotate(f"{rate:.1f}" if rate >= 1 else f"{rate:.2f}", (rate, y + height), (3, 0),
                        textcoords="offset points", va="center", fontsize=8)
-    d.set_xscale("log")
-    d.set_xlim(0.2, 60)
+    d.set(xscale="log", xlim=(0.2, 60), xlabel="million collisions per second, one core",
+          title="(d) shock of N = 8000 to t = 4000; hatched: absolute positions")
     d.set_xticks([0.3, 1, 3, 10, 30], ["0.3", "1", "3", "10", "30"])
     d.minorticks_off()
     d.set_yticks(range(len(order)), labels)
     d.invert_yaxis()
-    d.set_xlabel("million collisions per second, one core")
-    d.set_title("(d) shock of N = 8000 to t = 4000; hatched: absolute positions")
     d.grid(color="0.92", axis="x")
     d.set_axisbelow(True)
 

@@ -20,12 +20,12 @@
 #include <utility>
 #include <vector>
 
+#include "common.hpp"
 #include "cradle/core/chains/gap_chain.hpp"
 #include "cradle/core/engine/simulation.hpp"
 #include "cradle/core/initial/walled.hpp"
 #include "cradle/core/laws/law.hpp"
 #include "cradle/core/parallel/segments.hpp"
-#include "measured.hpp"
 
 namespace {
 

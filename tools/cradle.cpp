@@ -10,7 +10,6 @@
 #include <system_error>
 
 #include "cradle/tools/commands/commands.hpp"
-#include "cradle/tools/support/notify.hpp"
 #include "cradle/tools/support/version.hpp"
 
 using namespace cradle::tools;

@@ -2,10 +2,8 @@
 # Shared by quickstart.sh, test.sh and tests/tools/python/run.sh, which source it. `set_up program|tests` makes sure
 # that everything needed to build the program (and its tests) is installed: it installs what is missing with apt, as
 # root or through sudo. If it cannot, it lists the missing Debian packages and stops. If nothing is missing it needs no
-# network, root or apt. MPI, Highway and pybind11 are optional, and so are Chromium, in which tests inspect reports,
-# qemu-user, in which they check older processors, and MkDocs, which makes a site of the manual: they are installed if
-# that needs no password, else left out. `step` runs a command; if it fails, `step` stops and says what to do. Tested on
-# bare Debian 12 and 13.
+# network, root or apt. What is optional (install_optional says what for) is installed if that needs no password, else
+# left out. `step` runs a command; if it fails, `step` stops and says what to do. Tested on bare Debian 12 and 13.
 
 preset=release
 build=build/$preset

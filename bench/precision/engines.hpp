@@ -26,14 +26,10 @@ struct Engine {
   cradle::ScalarChoice scalar;
   bool gaps;
 
-  std::string representation() const { return gaps ? "gaps" : "absolute"; }
-  std::string type() const {
-    return scalar.digits > 0 ? scalar.name + " " + std::to_string(scalar.digits) : scalar.name;
-  }
   std::string name() const {
-    std::string name = representation() + "/" + type();
-    std::replace(name.begin(), name.end(), ' ', '_');
-    return name;
+    std::string type = scalar.digits > 0 ? scalar.name + "_" + std::to_string(scalar.digits) : scalar.name;
+    std::replace(type.begin(), type.end(), ' ', '_');
+    return (gaps ? "gaps/" : "absolute/") + type;
   }
 };
 

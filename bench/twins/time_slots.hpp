@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "line.hpp"
+#include "queues.hpp"
 
 namespace twins {
 

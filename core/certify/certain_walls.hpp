@@ -1,8 +1,9 @@
 #pragma once
 // The walls of a run in its proof: what their collisions make of the lines of particles, and their accounts. Without
-// gravity lines meet walls as they meet each other. With it, in the frame that falls (motion.hpp), walls are parabolas:
-// the time of a collision follows from a square root (certain_wall.hpp), and the new line starts there. If they meet at
-// T, at the speed u away from the wall (A, V) afterwards, and t is the double next to T, then with d = T - t
+// gravity lines meet walls as they meet each other. With it, in the frame that falls (world_lines.hpp), walls are
+// parabolas: the time of a collision follows from a square root (certain_wall.hpp), and the new line starts there. If
+// they meet at T, at the speed u away from the wall (A, V) afterwards, and t is the double next to T, then with d = T -
+// t
 //
 //   velocity = V + u - a T,   place at t = A + V t - a t^2/2 - u d + a d^2/2   (left wall; the right one: -u).
 //
@@ -19,7 +20,7 @@
 
 #include "cradle/core/certify/certain_state.hpp"
 #include "cradle/core/certify/certain_wall.hpp"
-#include "cradle/core/certify/motion.hpp"
+#include "cradle/core/certify/world_lines.hpp"
 
 namespace cradle {
 

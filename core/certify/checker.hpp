@@ -4,14 +4,6 @@
 // (precision/ball.hpp), and it checks the conditions under which these lines are the motion of the exact system. It
 // shares no arithmetic with the engine that proposes the collisions.
 //
-// World lines. Particle k flies along x = a_k + v_k t until its next collision; t is the time since the start. Two
-// particles l and r with w = v_l - v_r meet at the time T = (a_r - a_l)/w, and whatever impulse J they exchange,
-//
-//   (a, v)_l' = (a, v)_l - c_l ((a, v)_l - (a, v)_r),   (a, v)_r' = (a, v)_r + c_r ((a, v)_l - (a, v)_r),
-//
-// with c_l = J/(m_l w) and c_r = J/(m_r w). Places and velocities have the same linear map, since the lines of both
-// particles, before and after, go through one point. The time T does not enter.
-//
 // README.md says what is checked at the start, at each collision and at a time to which the run is to be proved, and
 // proves that this is enough: also for walls, under gravity and for particles that merge or pass.
 
@@ -138,23 +130,19 @@ template <Enclosing N> class Checker {
     r.changed = l.changed;
     l.touched = r.touched = true;
     if (walls_.pulled()) walls_.met(at_l, at_r, outcome.exchange);
-    last_.l = at_l, last_.r = outcome.event == Event::merge ? at_l : at_r, last_.time = time, last_.closing = closing;
-    if (outcome.event == Event::pass) std::swap(last_.l, last_.r);
-    ++proved_.collisions;
-    proved_.in_doubles += !motion_.needed_balls;
-    proved_.below_cutoff += outcome.below_cutoff;
-    proved_.merges += outcome.event == Event::merge;
-    if (outcome.event == Event::merge) motion_.lines.merge(at_l, at_r);
-    if (outcome.event == Event::pass) motion_.lines.pass(at_l, at_r);
-    return std::nullopt;
+    const bool merge = outcome.event == Event::merge, pass = outcome.event == Event::pass;
+    proved_.merges += merge;
+    if (merge) motion_.lines.merge(at_l, at_r);
+    if (pass) motion_.lines.pass(at_l, at_r);
+    return made({pass ? at_r : at_l, merge || pass ? at_l : at_r, time, closing}, outcome.below_cutoff);
   }
   std::optional<Doubt<N>> not_after(const N& last, const N& time) const {
     const Order order = motion_.compare(last, time);
     if (order == Order::less) return {};
     return Doubt<N>{Check::later, order == Order::greater, -1, -1, last, time};
   }
-  std::optional<Doubt<N>> made(const LastMeeting<N>& meeting, bool below_cutoff) {
-    last_ = meeting;
+  std::optional<Doubt<N>> made(LastMeeting<N> meeting, bool below_cutoff) {
+    last_ = std::move(meeting);
     ++proved_.collisions;
     proved_.in_doubles += !motion_.needed_balls;
     proved_.below_cutoff += below_cutoff;

@@ -8,7 +8,7 @@
 
 #include "cradle/core/certify/certain_state.hpp"
 #include "cradle/core/certify/certain_walls.hpp"
-#include "cradle/core/certify/motion.hpp"
+#include "cradle/core/certify/world_lines.hpp"
 
 namespace cradle {
 

@@ -15,9 +15,7 @@
 #include <vector>
 
 #include "cradle/core/certify/certain_state.hpp"
-#include "cradle/core/certify/enclosing.hpp"
 #include "cradle/core/certify/world_lines.hpp"
-#include "cradle/core/initial/particles.hpp"
 
 namespace cradle {
 

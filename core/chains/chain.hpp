@@ -1,7 +1,7 @@
 #pragma once
-// What the event loop requires of a chain. A chain holds the particles of a run in order, in coordinates of its choice.
-// It knows the next collision of each gap, makes one collision at a time and reports its result; the loop decides which
-// collision is next.
+// What the event loop requires of a chain, and what a chain reports of a collision. A chain holds the particles of a
+// run in order, in coordinates of its choice. It knows the next collision of each gap, makes one collision at a time
+// and reports its result; the loop decides which collision is next.
 //
 // Slots number the gaps from left to right; the held ones are first() to last(), and there are two empty ones at either
 // end. Local times represent times of the scene inside the chain: offsets from an origin that moves, or the times
@@ -9,14 +9,50 @@
 
 #include <concepts>
 #include <cstddef>
+#include <optional>
 
-#include "cradle/core/chains/collision_result.hpp"
 #include "cradle/core/chains/configuration.hpp"
+#include "cradle/core/chains/gravity.hpp"
 #include "cradle/core/laws/law.hpp"
 #include "cradle/core/queue/account.hpp"
 #include "cradle/core/queue/event_queue.hpp"
 
 namespace cradle {
+
+// The requests of a chain to the event loop after a collision, handled off the hot path: a set, named by what to do.
+enum class Notice : unsigned {
+  none = 0,
+  origin_should_move = 1,  // the flight before the collision was short: 2^-20 of the time since the origin
+  origin_must_move = 2,    // so short, 2^-40, that time loses digits unless the origin moves now
+  gap_below_floor = 4,     // the collision left a neighbouring gap below the floor (collapse, or a gap that has closed)
+  needs_slots = 8          // the chain has no slot for the next particle of a row: lay it out anew
+};
+
+constexpr Notice operator|(Notice a, Notice b) {
+  return static_cast<Notice>(static_cast<unsigned>(a) | static_cast<unsigned>(b));
+}
+constexpr Notice& operator|=(Notice& a, Notice b) { return a = a | b; }
+constexpr Notice when(bool holds, Notice notice) {
+  return static_cast<Notice>(static_cast<unsigned>(holds) * static_cast<unsigned>(notice));
+}
+// Whether it has any of the others.
+constexpr bool includes(Notice notices, Notice others) {
+  return (static_cast<unsigned>(notices) & static_cast<unsigned>(others)) != 0;
+}
+
+// The request after a flight that ends at the given time since the origin, both as queue times.
+[[gnu::always_inline]] inline Notice of_flight(double flown, double time) {
+  return when(flown < time * 0x1p-20, Notice::origin_should_move) |
+         when(flown < time * 0x1p-40, Notice::origin_must_move);
+}
+
+// The law's outcome and the next collisions of the three gaps involved, as queue times.
+template <Real T> struct CollisionResult {
+  Outcome<T> outcome;
+  double due_left, due, due_right;
+  Notice notice;
+  Slot left, right;  // of the gaps on either side
+};
 
 template <class C>
 concept Chain = Real<typename C::Scalar> && requires(const C chain, C changing, Slot s, const typename C::Scalar time) {
@@ -47,6 +83,11 @@ concept Chain = Real<typename C::Scalar> && requires(const C chain, C changing, 
   { chain.closing(s) } -> std::convertible_to<typename C::Scalar>;
   { chain.due(s) } -> std::convertible_to<typename C::Scalar>;
   { chain.queue_due(s) } -> std::same_as<double>;
+
+  // Whether anything falls or is shaken: closing speeds of gaps to walls then change between collisions. What follows a
+  // collision that has just been made, if it was with a floor.
+  { chain.falls() } -> std::same_as<bool>;
+  { chain.rebound(s) } -> std::same_as<std::optional<Rebound<typename C::Scalar>>>;
 
   // Collisions after which a neighbouring gap is below the floor are noticed. The smaller gap beside the last collision
   // at its time, far away beyond an end; the least difference of two collision times that is resolved; what could not

@@ -12,14 +12,8 @@
 // moves from the first cell to the last one, across the seam, appears one circumference L further right. The mass that
 // has crossed is recorded, since each crossing moves the centre of mass of these positions by L times its share.
 
-#include <algorithm>
-#include <memory>
-#include <utility>
-#include <vector>
-
 #include "cradle/core/base/state.hpp"
 #include "cradle/core/chains/cluster_places.hpp"
-#include "cradle/core/chains/collision_result.hpp"
 
 namespace cradle {
 
@@ -44,7 +38,7 @@ template <Real T> class ClusterChain : public ClusterPlaces<T> {
   using typename Places::Line;
 
   // Holds the particles at the gaps in motion and streams the others in as fronts reach them; `hold_all`: holds all.
-  ClusterChain(std::shared_ptr<const Particles<T>> particles, const T& start, bool hold_all = false)
+  ClusterChain(const std::shared_ptr<const Particles<T>>& particles, const T& start, bool hold_all = false)
       : ClusterChain(particles, start,
                      hold_all || particles->on_ring() ? GapRange{0, particles->count() - 2}
                                                       : particles->gaps_in_motion()) {}
@@ -86,7 +80,6 @@ template <Real T> class ClusterChain : public ClusterPlaces<T> {
     beyond_ = first() + static_cast<Slot>(beyond);
   }
 
-  void set_floor(const T& floor) { line_.gaps.set_floor(floor); }
   T nearest_gap(Slot s) const {
     const T far = far_away<T>();
     const Slot p = left(s), n = beyond_;
@@ -161,8 +154,8 @@ template <Real T> class ClusterChain : public ClusterPlaces<T> {
   using Places::frame_, Places::centre_, Places::carried_;
   using Places::line_, Places::range_, Places::particles_, Places::vacated_, Places::active_, Places::beyond_;
 
-  ClusterChain(std::shared_ptr<const Particles<T>> particles, const T& start, GapRange held)
-      : Places(std::move(particles), start, held) {
+  ClusterChain(const std::shared_ptr<const Particles<T>>& particles, const T& start, GapRange held)
+      : Places(particles, start, held) {
     const auto cells = static_cast<std::size_t>(held.last - held.first + 2);
     const std::size_t needed = range_.lay_out(cells, growth(cells));
     line_.gaps.fill(needed, first(), cells, [&](std::size_t k) {

@@ -10,7 +10,7 @@
 #include <tuple>
 #include <utility>
 
-#include "cradle/core/chains/collision_result.hpp"
+#include "cradle/core/chains/chain.hpp"
 #include "cradle/core/chains/timed_gaps.hpp"
 #include "cradle/core/laws/law.hpp"
 

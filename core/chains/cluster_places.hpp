@@ -1,58 +1,41 @@
 #pragma once
-// The particles that a chain of clusters holds (cluster_chain.hpp), each with the gap behind it: times, slots, and
-// their state in positions. The configuration has the particles that have collided and the next one on each side;
-// before the first collision all held particles; on a ring all, from the first one right of x = 0. Positions are
-// computed from a particle that has not collided, the one at the left end if there is one, else from the centre of
-// mass. If there is one at either end, or on a ring, the sum of the gaps can be checked; closing speeds are differences
-// of velocities and always add up.
+// The particles that a chain of clusters holds (cluster_chain.hpp), each with the gap behind it: slots, and their state
+// in positions. The configuration has the particles that have collided and the next one on each side; before the first
+// collision all held particles; on a ring all, from the first one right of x = 0. Positions are computed from a
+// particle that has not collided, the one at the left end if there is one, else from the centre of mass. If there is
+// one at either end, or on a ring, the sum of the gaps can be checked; closing speeds are differences of velocities and
+// always add up.
 
-#include <memory>
 #include <optional>
-#include <utility>
-#include <vector>
 
-#include "cradle/core/base/state.hpp"
 #include "cradle/core/chains/anchor.hpp"
 #include "cradle/core/chains/cluster_line.hpp"
 #include "cradle/core/chains/configuration.hpp"
+#include "cradle/core/chains/gravity.hpp"
 #include "cradle/core/chains/held_range.hpp"
 #include "cradle/core/queue/relative_motion.hpp"
 
 namespace cradle {
 
-template <Real T> class ClusterPlaces {
- public:
-  using Scalar = T;
-  using Line = ClusterLine<T>;
-  static constexpr bool may_collapse = false;
-  static constexpr bool keys_are_exact = Line::Gaps::keys_are_exact;
+template <Real T> class ClusterPlaces : public HeldLine<T, ClusterLine<T>> {
+  using Held = HeldLine<T, ClusterLine<T>>;
 
-  // ---- times: local ones are offsets from an origin that moves
-  const Clock<T>& clock() const { return line_.gaps.clock(); }
-  const T& start() const { return clock().start(); }
-  T local_time(const T& time) const { return clock().offset(time); }
-  Pair<T> stamp(const T& local) const { return clock().stamp(local); }
-  double queue_time(const T& local) const { return line_.gaps.queue_time(local); }
+ public:
+  static constexpr bool may_collapse = false;
+  using Held::clock, Held::count, Held::first, Held::last, Held::on_ring;
 
   // ---- slots: held cells are first() to last(), with vacant ones among them; the last cell has no gap
-  std::size_t slots() const { return line_.gaps.slots(); }
-  Slot first() const { return range_.first(); }
-  Slot last() const { return range_.last(); }
   Slot left(Slot s) const { return line_.left(s); }
   Slot right(Slot s) const { return line_.right(s); }
   ParticleIndex particle(Slot s) const { return line_.gaps[s].particle; }
-  ParticleIndex count() const { return particles_->count(); }
   ParticleIndex collided_particles() const { return active_; }
-  bool on_ring() const { return range_.on_ring(); }
 
   T due(Slot s) const { return line_.due(s); }
   double queue_due(Slot s) const { return line_.queue_due(s); }
   T closing(Slot s) const { return line_.closing(s); }
 
-  const Account<T>& account() const { return line_.gaps.account(); }
-  void lose(Slot s, const T& energy) { line_.gaps.lose(s, energy); }
-  T energy_lost() const { return line_.gaps.energy_lost(first(), last()); }
-  T time_resolution(Slot, const T& time) const { return line_.gaps.time_resolution(time); }
+  static constexpr bool falls() { return false; }
+  std::optional<Rebound<T>> rebound(Slot) const { return {}; }
 
   // ---- reading, at a local time not before the last collision
   T gap_at(Slot s, const T& time) const { return line_.gaps.gap_at(s, closing(s), time); }
@@ -131,23 +114,17 @@ template <Real T> class ClusterPlaces {
     return c;
   }
 
-  // ---- for segments (segments.hpp)
-  const Line& line() const { return line_; }
-  const HeldRange& range() const { return range_; }
-  bool fronts_are_within(Slot left, Slot right) const {
-    return on_ring() || (range_.has_fronts() && range_.front_left() <= left && range_.front_right() >= right);
-  }
-  void lose(const Ledger<T>& elsewhere) { line_.gaps.lose(elsewhere); }
-  ParticleIndex place(Slot s) const { return static_cast<ParticleIndex>(s); }
+  ParticleIndex place(Slot s) const { return static_cast<ParticleIndex>(s); }  // in the order of the line
 
  protected:
-  ClusterPlaces(std::shared_ptr<const Particles<T>> particles, const T& start, GapRange held)
-      : particles_(std::move(particles)),
-        // No speed exceeds 1 + 2E/m >= sqrt(2E/m).
-        line_(start, particles_->energy_to_lose(), T(T(2) + T(4) * particles_->energy_over_least_mass())),
-        range_(particles_->on_ring(), held.first, particles_->count() - 2 - held.last, 3),
-        frame_(particles_->momentum() / particles_->total_mass()) {
-    require_particles(*particles_, start);
+  using Held::line_, Held::particles_, Held::range_;
+
+  ClusterPlaces(const std::shared_ptr<const Particles<T>>& particles, const T& start, GapRange held)
+      // No speed exceeds 1 + 2E/m >= sqrt(2E/m).
+      : Held(particles, start,
+             {start, particles->energy_to_lose(), T(T(2) + T(4) * particles->energy_over_least_mass())},
+             {particles->on_ring(), held.first, particles->count() - 2 - held.last, 3}),
+        frame_(particles->momentum() / particles->total_mass()) {
     require_no_gravity(*particles_, "particles that merge have none");
   }
 
@@ -156,9 +133,6 @@ template <Real T> class ClusterPlaces {
     return undisturbed(*particles_, particle(s), clock().elapsed(time)).x;
   }
 
-  std::shared_ptr<const Particles<T>> particles_;
-  Line line_;
-  HeldRange range_;
   std::size_t vacated_ = 0;   // since the last layout
   ParticleIndex active_ = 0;  // particles from one front to the other, both included
   Slot beyond_ = 0;          // the cell with the gap right of the last collision: of both particles if they have merged

@@ -12,16 +12,9 @@
 // README.md says how particles of a row are added when they are hit (Streaming), and what several particles do that
 // rest on a wall, one on the other (Piles).
 
-#include <algorithm>
-#include <memory>
 #include <numeric>
-#include <optional>
-#include <tuple>
-#include <utility>
-#include <vector>
 
 #include "cradle/core/base/state.hpp"
-#include "cradle/core/chains/collision_result.hpp"
 #include "cradle/core/chains/gap_ends.hpp"
 #include "cradle/core/laws/one_of.hpp"
 
@@ -37,14 +30,14 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain : public Gap
 
   // Holds the gaps in motion and streams the others in as the fronts reach them; `hold_all` holds every gap from the
   // start. Throws std::invalid_argument for masses that differ if the chain is for identical ones.
-  GapChain(std::shared_ptr<const Particles<T>> particles, const T& start, bool hold_all = false)
+  GapChain(const std::shared_ptr<const Particles<T>>& particles, const T& start, bool hold_all = false)
       : GapChain(particles, start, hold_all ? particles->gaps() : particles->gaps_in_motion()) {}
 
   // The chain of other particles, in the memory of this one.
-  void begin_again(std::shared_ptr<const Particles<T>> particles) {
+  void begin_again(const std::shared_ptr<const Particles<T>>& particles) {
     const T start = Ends::start();
     const GapRange held = particles->gaps_in_motion();
-    *this = GapChain(std::move(particles), start, held, line_.gaps.leave());
+    *this = GapChain(particles, start, held, line_.gaps.leave());
   }
 
   // ---- events (inlined by force, see gap_line.hpp)
@@ -121,9 +114,9 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain : public Gap
   using Ends::line_, Ends::range_, Ends::particles_, Ends::memory_, Ends::walls_, Ends::wall_gaps_, Ends::left_;
   using Ends::right_, Ends::fastest_, Ends::slot_in_pile, Ends::flight, Ends::lay_out;
 
-  GapChain(std::shared_ptr<const Particles<T>> particles, const T& start, GapRange held,
+  GapChain(const std::shared_ptr<const Particles<T>>& particles, const T& start, GapRange held,
            typename Line::Gaps::Memory memory = {})
-      : Ends(std::move(particles), start, held, std::move(memory)) {
+      : Ends(particles, start, held, std::move(memory)) {
     lay_out({}, held.last - held.first + 1);
     for (Slot s = first(); s <= last(); ++s) line_.load(s, *particles_, T(0));
     foresee_walls();
@@ -140,15 +133,10 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain : public Gap
   // Whether a loaded gap has numbers that a gap can have.
   bool fits(Slot s) const {
     const auto& gap = line_.gaps[s];
-    const auto has_due = [&] {
-      if constexpr (keys_are_exact)
-        return gap.due == gap.due;
-      else
-        return true;
-    };
-    if (wall_gaps_.pulls(particle(s)))  // it may be due while it opens
-      return is_finite(gap.gap) && is_finite(gap.time) && is_finite(gap.closing) && has_due();
-    return gap.fits(gap.closing);
+    if (!wall_gaps_.pulls(particle(s))) return gap.fits(gap.closing);
+    bool is_due = true;  // it may be due while it opens
+    if constexpr (keys_are_exact) is_due = gap.due == gap.due;
+    return is_due && is_finite(gap.gap) && is_finite(gap.time) && is_finite(gap.closing);
   }
 
   template <LawChoice Law>
@@ -158,8 +146,7 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain : public Gap
   template <class Law> [[gnu::always_inline]] Outcome<T> outcome(const Law& law, Slot s, const T& time, const T& w) {
     if constexpr (Line::watched && requires { law.cutoff(); }) watch_threshold(s, time, w, law.cutoff());
     if constexpr (LawWithMemory<Law, T>)
-      if (!memory_.rested({left(s), s, right(s)}, s, time, law.contact_time(), local_time(clock().start()), slots()))
-        return law.elastic(w, line_.masses.of_pair(s));
+      if (!rested(law, s, time)) return law.elastic(w, line_.masses.of_pair(s));
     const Outcome<T> outcome = law(w, line_.masses.of_pair(s));
     if constexpr (Line::watched && !requires { law.cutoff(); })
       line_.certainty.slope(law, w, line_.masses.of_pair(s), outcome);
@@ -169,10 +156,7 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain : public Gap
     return law.visit([&](const auto& own) { return outcome_at_wall(own, s, time); });
   }
   template <class Law> Outcome<T> outcome_at_wall(const Law& law, Slot s, const T& time) {
-    bool rested = true;
-    if constexpr (LawWithMemory<Law, T>)
-      rested =
-          memory_.rested({left(s), s, right(s)}, s, time, law.contact_time(), local_time(clock().start()), slots());
+    const bool after_rest = rested(law, s, time);
     if (falls()) {
       const ParticleIndex wall = walls_.beside(particle(s)) ? particle(s) : wall_gaps_.wall_of_pile();
       const T w = closing_when_due(s), &mass = line_.masses[walls_.left_of(wall) ? s + 1 : s];
@@ -182,9 +166,15 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain : public Gap
         if constexpr (requires { law.cutoff(); }) watch_threshold(s, time, w, law.cutoff());
       }
       return wall_gaps_.strike_wall(walls_, wall, law, w, mass, elapsed, wall_gaps_.holds(particle(s), w, elapsed),
-                                    rested);
+                                    after_rest);
     }
     return walls_.strike(particle(s), closing(s), line_.masses[walls_.left_of(particle(s)) ? s + 1 : s]);
+  }
+  // Whether neither particle has had a collision within the law's contact time; records that they have one now.
+  template <class Law> [[gnu::always_inline]] bool rested(const Law& law, Slot s, const T& time) {
+    if constexpr (LawWithMemory<Law, T>)
+      return memory_.rested({left(s), s, right(s)}, s, time, law.contact_time(), local_time(clock().start()), slots());
+    return true;
   }
   // Whether rounding decides if a collision at the speed w is slower than a speed.
   void watch_threshold(Slot s, const T& time, const T& w, const T& speed) requires(Line::watched) {

@@ -7,10 +7,6 @@
 // the energy m (v'^2 - v^2)/2 - m a (x' - x), in no collision. They are entered in the accounts when its gap next
 // changes, and added to them when they are read before.
 
-#include <algorithm>
-#include <optional>
-#include <vector>
-
 #include "cradle/core/chains/gap_places.hpp"
 
 namespace cradle {

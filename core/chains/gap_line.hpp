@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "cradle/core/chains/certainty.hpp"
-#include "cradle/core/chains/collision_result.hpp"
+#include "cradle/core/chains/chain.hpp"
 #include "cradle/core/chains/masses.hpp"
 #include "cradle/core/chains/timed_gaps.hpp"
 #include "cradle/core/chains/watched_gap.hpp"

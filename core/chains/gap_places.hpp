@@ -5,10 +5,7 @@
 // velocities from the total momentum; the closure error is the difference between the circumference and the sum of the
 // gaps.
 
-#include <algorithm>
 #include <limits>
-#include <optional>
-#include <vector>
 
 #include "cradle/core/chains/configuration.hpp"
 #include "cradle/core/chains/held_gaps.hpp"

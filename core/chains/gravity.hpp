@@ -163,12 +163,4 @@ template <Real T> class Gravity {
   ParticleIndex count_, other_wall_ = none, resting_ = 0, above_pile_ = none;
 };
 
-// Whether anything falls or is shaken in a chain: closing speeds of gaps to walls then change between collisions.
-template <class C> bool falls(const C& chain) {
-  if constexpr (requires { chain.falls(); })
-    return chain.falls();
-  else
-    return false;
-}
-
 }  // namespace cradle

@@ -11,11 +11,16 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <memory>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "cradle/core/initial/particles.hpp"
+#include "cradle/core/queue/account.hpp"
+#include "cradle/core/queue/clock.hpp"
 #include "cradle/core/queue/event_queue.hpp"
+#include "cradle/core/queue/ledger.hpp"
 
 namespace cradle {
 
@@ -122,6 +127,52 @@ class HeldRange {
   Slot front_left_ = 0, front_right_ = 0;  // both 0 while there are none; then no slot is inside
   ParticleIndex unheld_left_, unheld_right_;
   Slot spare_;
+};
+
+// What both chains in gaps are: a line (gap_line.hpp, cluster_line.hpp) of which a range is held. What is asked of any
+// chain is explained in chain.hpp.
+template <Real T, class OfLine> class HeldLine {
+ public:
+  using Scalar = T;
+  using Line = OfLine;
+  static constexpr bool keys_are_exact = Line::Gaps::keys_are_exact;
+
+  // ---- times: local ones are offsets from an origin that moves
+  const Clock<T>& clock() const { return line_.gaps.clock(); }
+  const T& start() const { return clock().start(); }
+  T local_time(const T& time) const { return clock().offset(time); }
+  Pair<T> stamp(const T& local) const { return clock().stamp(local); }
+  double queue_time(const T& local) const { return line_.gaps.queue_time(local); }
+  T time_resolution(Slot, const T& time) const { return line_.gaps.time_resolution(time); }
+
+  std::size_t slots() const { return line_.gaps.slots(); }
+  Slot first() const { return range_.first(); }
+  Slot last() const { return range_.last(); }
+  bool on_ring() const { return range_.on_ring(); }
+  ParticleIndex count() const { return particles_->count(); }
+
+  void set_floor(const T& floor) { line_.gaps.set_floor(floor); }
+  const Account<T>& account() const { return line_.gaps.account(); }
+  void lose(Slot s, const T& energy) { line_.gaps.lose(s, energy); }
+  T energy_lost() const { return line_.gaps.energy_lost(first(), last()); }
+
+  // ---- for segments (segments.hpp)
+  const Line& line() const { return line_; }
+  const HeldRange& range() const { return range_; }
+  void lose(const Ledger<T>& elsewhere) { line_.gaps.lose(elsewhere); }
+  bool fronts_are_within(Slot left, Slot right) const {
+    return on_ring() || (range_.has_fronts() && range_.front_left() <= left && range_.front_right() >= right);
+  }
+
+ protected:
+  HeldLine(std::shared_ptr<const Particles<T>> particles, const T& start, Line line, const HeldRange& range)
+      : particles_(std::move(particles)), line_(std::move(line)), range_(range) {
+    require_particles(*particles_, start);
+  }
+
+  std::shared_ptr<const Particles<T>> particles_;
+  Line line_;
+  HeldRange range_;
 };
 
 }  // namespace cradle

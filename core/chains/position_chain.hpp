@@ -7,17 +7,12 @@
 
 #include <algorithm>
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "cradle/core/base/state.hpp"
 #include "cradle/core/chains/anchor.hpp"
-#include "cradle/core/chains/collision_result.hpp"
-#include "cradle/core/chains/configuration.hpp"
-#include "cradle/core/chains/gravity.hpp"
+#include "cradle/core/chains/chain.hpp"
 #include "cradle/core/laws/one_of.hpp"
-#include "cradle/core/queue/account.hpp"
-#include "cradle/core/queue/event_queue.hpp"
 #include "cradle/core/queue/ledger.hpp"
 #include "cradle/core/queue/relative_motion.hpp"
 

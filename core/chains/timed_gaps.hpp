@@ -20,7 +20,7 @@
 #include <limits>
 
 #include "cradle/core/base/state.hpp"
-#include "cradle/core/chains/collision_result.hpp"
+#include "cradle/core/chains/chain.hpp"
 #include "cradle/core/chains/timed_cells.hpp"
 #include "cradle/core/queue/account.hpp"
 #include "cradle/core/queue/clock.hpp"

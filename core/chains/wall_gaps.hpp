@@ -3,7 +3,6 @@
 // a wall is shaken: those gaps of a line (gap_line.hpp) are curves in time. Nothing here is on the hot path.
 
 #include <array>
-#include <optional>
 
 #include "cradle/core/chains/gap_line.hpp"
 #include "cradle/core/chains/gravity.hpp"
@@ -61,18 +60,30 @@ template <class Line> class WallGaps : public Gravity<typename Line::Scalar> {
       last = {gap, closing, since, resting(), approach(line.particle(s), gap, closing, since).meeting()};
     return last->meeting;
   }
-  // Its local time.
-  std::optional<T> due(const Line& line, Slot s) const {
-    const auto next = meeting(line, s);
-    return next ? std::optional<T>(line.gaps.after(s, next->in)) : std::nullopt;
+  // The local time of the next collision at any gap (far away: never), the same as queue time, and how fast it is.
+  T due(const Line& line, Slot s) const {
+    if constexpr (!Line::Gaps::keys_are_exact)
+      if (pulls(line.particle(s))) return pulled_due(line, s).value_or(far_away<T>());
+    return line.due(s);
   }
   double queue_due(const Line& line, Slot s) const {
-    const std::optional<T> time = due(line, s);
+    if constexpr (!Line::Gaps::keys_are_exact)
+      if (pulls(line.particle(s))) return pulled_queue_due(line, s);
+    return line.queue_due(s);
+  }
+  T closing_when_due(const Line& line, Slot s) const {
+    if (!pulls(line.particle(s))) return line.closing(s);
+    const auto next = meeting(line, s);
+    return next ? next->speed : T(0);
+  }
+  // The queue time of the next collision at a gap that is pulled.
+  double pulled_queue_due(const Line& line, Slot s) const {
+    const std::optional<T> time = pulled_due(line, s);
     return time ? line.gaps.queue_time(*time) : EventQueue::never;
   }
   // The same, and enters it where keys are stored.
   double foresee(Line& line, Slot s) {
-    const double time = queue_due(line, s);
+    const double time = pulled_queue_due(line, s);
     if constexpr (Line::Gaps::keys_are_exact) line.gaps[s].due = time;
     return time;
   }
@@ -86,10 +97,9 @@ template <class Line> class WallGaps : public Gravity<typename Line::Scalar> {
     const bool with_wall = at_wall(line.particle(s)), lands = pile > resting() && resting() > 0;
     const bool to_left = !lands || pile_end() == End::right, to_right = !lands || pile_end() == End::left;
     if constexpr (Line::watched) {
-      const auto next = pulls(line.particle(s)) ? meeting(line, s) : std::nullopt;
-      const T w = next ? next->speed : line.closing(s);
-      line.certainty.collision(line.gaps, Curved{line, *this}, p, s, n, line.particle(s), time, w, outcome,
-                               line.masses.of_pair(s), line.exact_sums(), {to_left, to_right});
+      line.certainty.collision(line.gaps, Curved{line, *this}, p, s, n, line.particle(s), time,
+                               closing_when_due(line, s), outcome, line.masses.of_pair(s), line.exact_sums(),
+                               {to_left, to_right});
     }
     if (to_left) notice |= kick(line, p, outcome.to_left, since, time);
     if (to_right) notice |= kick(line, n, outcome.to_right, since, time);
@@ -142,6 +152,11 @@ template <class Line> class WallGaps : public Gravity<typename Line::Scalar> {
   }
 
  private:
+  std::optional<T> pulled_due(const Line& line, Slot s) const {
+    const auto next = meeting(line, s);
+    return next ? std::optional<T>(line.gaps.after(s, next->in)) : std::nullopt;
+  }
+
   // How gaps move where some of them are pulled.
   struct Curved {
     static constexpr bool curved = true;

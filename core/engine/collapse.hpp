@@ -10,11 +10,8 @@
 #include <tuple>
 #include <unordered_map>
 
-#include "cradle/core/chains/gravity.hpp"
-#include "cradle/core/engine/gap_errors.hpp"
-#include "cradle/core/engine/two_gaps.hpp"
-#include "cradle/core/initial/particles.hpp"
-#include "cradle/core/queue/event_queue.hpp"
+#include "cradle/core/chains/chain.hpp"
+#include "cradle/core/engine/collapse_ahead.hpp"
 
 namespace cradle {
 
@@ -23,15 +20,15 @@ enum class CollapsePolicy {
   stop     // exact dynamics; stop when the collapse time is known, or when a gap is below a given size
 };
 
-// What is known of a collapse when the run stops.
-template <Real T> struct CollapseReport {
+// What is known of a collapse when the run stops, in numbers of the scalar type or of what stands for that in a report.
+template <class T, class Time = Pair<T>> struct CollapseReport {
   T last_collision{0};          // time of the last collision made
   T interval{0};                // since the previous collision at the same gap, 0 if there was none
   T gap{0};                     // smallest gap beside the last collision, or height of the rebound from a floor
   ParticleIndex particle = -1;  // the particle on the left of the gap of the last collision
   bool settled = false;
   // If it is settled: t_c, the limit of the ratio of successive intervals there, and bounds of their errors.
-  Pair<T> time{};
+  Time time{};
   T uncertainty{0}, ratio{0}, ratio_uncertainty{0};
 
   static auto state(auto& self) {
@@ -39,14 +36,6 @@ template <Real T> struct CollapseReport {
                     self.uncertainty, self.ratio, self.ratio_uncertainty);
   }
 };
-
-// After the collision at slot s, if it was with a floor (gravity.hpp).
-template <class Chain> std::optional<Rebound<typename Chain::Scalar>> rebound(const Chain& chain, Slot s) {
-  if constexpr (requires { chain.rebound(s); })
-    return chain.rebound(s);
-  else
-    return {};
-}
 
 // The proved collapse of two neighbouring gaps, with the best bounds known.
 template <Real T> struct KnownCollapse {
@@ -75,7 +64,7 @@ template <Real T> struct CollapseWatch {
   // are.
   template <class Chain> T begin(const Chain& chain, const T& least) {
     if constexpr (provable<Chain>) {
-      if (in_gaps<Chain> && falls(chain)) return least / T(64);
+      if (in_gaps<Chain> && chain.falls()) return least / T(64);
       using std::sqrt;
       greatest_approach = sqrt(chain.particles().greatest_approach_squared());
       if (chain.particles().count() <= few) {
@@ -97,14 +86,14 @@ template <Real T> struct CollapseWatch {
     const Pair<T> now = chain.stamp(local);
     const auto before = last.find(particle);
     const T nearest = chain.nearest_gap(s);
-    const auto back = rebound(chain, s);
+    const auto back = chain.rebound(s);
     report = {now.value(), before == last.end() ? T(0) : T(local - before->second),
               back && back->height < nearest ? back->height : nearest, particle};
     last.insert_or_assign(particle, local);
     for (const auto& gap : {left_of(chain, s), std::optional(s), right_of(chain, s)})
       if (gap) moves_at(chain.closing(*gap));
     if constexpr (ScaleFreeLaw<Law> && provable<Chain>)
-      if (law.scale_free() && !falls(chain)) {
+      if (law.scale_free() && !chain.falls()) {
         if constexpr (in_gaps<Chain>)
           if (errors.kept()) errors.collision(law, chain, left_of(chain, s), s, right_of(chain, s), local);
         for (const bool on_left : {true, false})
@@ -123,7 +112,7 @@ template <Real T> struct CollapseWatch {
   // collapse is proved there.
   template <class Chain> bool ends_unproved(const Chain& chain, Slot s, const T& gap) const {
     if constexpr (in_gaps<Chain>)
-      return !falls(chain) && !report.settled && chain.particles().count() > few && is_positive(gap) &&
+      return !chain.falls() && !report.settled && chain.particles().count() > few && is_positive(gap) &&
              gap < chain.particles().gap(chain.particle(s)) / T(std::int64_t{1} << 50) / T(std::int64_t{1} << 50);
     else
       return false;

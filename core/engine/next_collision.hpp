@@ -9,7 +9,6 @@
 #include "cradle/core/engine/pacing.hpp"
 #include "cradle/core/engine/status.hpp"
 #include "cradle/core/engine/ties.hpp"
-#include "cradle/core/queue/event_queue.hpp"
 
 namespace cradle {
 

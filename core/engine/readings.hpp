@@ -8,8 +8,6 @@
 #include <utility>
 
 #include "cradle/core/chains/chain.hpp"
-#include "cradle/core/chains/configuration.hpp"
-#include "cradle/core/chains/gravity.hpp"
 #include "cradle/core/engine/status.hpp"
 
 namespace cradle {
@@ -64,7 +62,7 @@ template <class Chain> class Readings {
   // After the last collision; at a time between it and the time advanced to, which matters if particles fall.
   T kinetic_energy() const { return chain_.kinetic_energy(last_collision_); }
   T kinetic_energy(const T& time) const { return chain_.kinetic_energy(local(time)); }
-  bool falls() const { return cradle::falls(chain_); }
+  bool falls() const { return chain_.falls(); }
   // The start if there has been no collision.
   T last_collision_time() const { return chain_.stamp(last_collision_).value(); }
 

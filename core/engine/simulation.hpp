@@ -6,24 +6,15 @@
 // A run makes the same collisions with the same bits, however often `advance` is called and up to whichever times.
 
 #include <concepts>
-#include <cstdint>
 #include <functional>
 #include <limits>
-#include <memory>
-#include <utility>
 
 #include "cradle/core/base/state.hpp"
-#include "cradle/core/chains/chain.hpp"
-#include "cradle/core/chains/collision_result.hpp"
 #include "cradle/core/engine/collapse.hpp"
 #include "cradle/core/engine/next_collision.hpp"
 #include "cradle/core/engine/pacing.hpp"
 #include "cradle/core/engine/readings.hpp"
-#include "cradle/core/engine/standstill.hpp"
-#include "cradle/core/engine/status.hpp"
-#include "cradle/core/laws/law.hpp"
 #include "cradle/core/laws/one_of.hpp"
-#include "cradle/core/queue/event_queue.hpp"
 
 namespace cradle {
 
@@ -242,7 +233,7 @@ class Simulation : public Readings<Chain> {
     const bool move = pacing_.origin_moves(notice, counts_.collisions, last_collision_, active());
     const bool stands_still = (move || !pacing_.in_epochs) &&
                               standstill_.at(last_collision_, elapsed(last_collision_), counts_.collisions, active(),
-                                             policy_.follows_a_gap() && rebound(chain_, s).has_value());
+                                             policy_.follows_a_gap() && chain_.rebound(s).has_value());
     const bool moves = move && !stands_still, poll = moves || counts_.collisions >= pacing_.next_review;
     const T before = last_collision_;
     if (moves) move_origin(before);
@@ -277,7 +268,7 @@ class Simulation : public Readings<Chain> {
     const bool followed = watched && watch_.settled(law_, chain_, s, last_collision_, counts_.collisions);
     const T gap = chain_.nearest_gap(s);
     if (watched && !policy_.follows_a_gap() && watch_.ends_unproved(chain_, s, gap)) return Status::collapsed;
-    return policy_.after(gap, rebound(chain_, s), watched && watch_.report.settled, followed);
+    return policy_.after(gap, chain_.rebound(s), watched && watch_.report.settled, followed);
   }
 
   Law law_;

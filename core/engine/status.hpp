@@ -5,12 +5,10 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
-#include <optional>
 #include <tuple>
 
 #include "cradle/core/chains/chain.hpp"
 #include "cradle/core/engine/collapse.hpp"
-#include "cradle/core/initial/particles.hpp"
 
 namespace cradle {
 

@@ -15,7 +15,6 @@
 #include <vector>
 
 #include "cradle/core/chains/chain.hpp"
-#include "cradle/core/queue/event_queue.hpp"
 
 namespace cradle {
 

@@ -18,7 +18,6 @@
 #include <vector>
 
 #include "cradle/core/ensemble/executor.hpp"
-#include "cradle/core/ensemble/statistics.hpp"
 #include "cradle/core/ensemble/tbb_executor.hpp"
 #include "cradle/core/ensemble/tree.hpp"
 

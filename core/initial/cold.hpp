@@ -12,14 +12,7 @@
 // (held_range.hpp). Velocities are whole numbers (README.md) minus the velocity of their centre of mass, times a unit
 // that gives them their energy.
 
-#include <cstdint>
-#include <memory>
-#include <utility>
-#include <vector>
-
 #include "cradle/core/base/elementary.hpp"
-#include "cradle/core/initial/mass_pattern.hpp"
-#include "cradle/core/initial/particles.hpp"
 #include "cradle/core/initial/rows.hpp"
 #include "cradle/core/initial/velocities.hpp"
 

@@ -3,12 +3,6 @@
 // independent velocities of a given variance. Velocities and displacements are whole numbers times a unit that every
 // scalar type rounds (README.md).
 
-#include <string>
-#include <utility>
-#include <vector>
-
-#include "cradle/core/initial/mass_pattern.hpp"
-#include "cradle/core/initial/particles.hpp"
 #include "cradle/core/initial/rows.hpp"
 #include "cradle/core/initial/velocities.hpp"
 

@@ -4,7 +4,6 @@
 // have no correct digit.
 
 #include <algorithm>
-#include <optional>
 #include <utility>
 #include <vector>
 

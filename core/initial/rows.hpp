@@ -8,8 +8,6 @@
 
 #include <cmath>
 #include <functional>
-#include <limits>
-#include <optional>
 #include <utility>
 
 #include "cradle/core/base/counter_rng.hpp"

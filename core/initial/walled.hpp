@@ -1,9 +1,6 @@
 #pragma once
 // Particles on a line with walls at one end or both (wall.hpp), gravity, or both. Shaken walls are as at the start.
 
-#include <limits>
-#include <memory>
-#include <optional>
 #include <utility>
 
 #include "cradle/core/initial/particles.hpp"

@@ -75,7 +75,7 @@ concept LawWithMemory = Law<L, T> && requires(const L law, const T& w, const Two
 };
 
 // A law that says whether every outcome is proportional to the closing speed, at any speed. For other laws this is
-// unknown, and no collapse is proved for them (two_gaps.hpp).
+// unknown, and no collapse is proved for them (collapse_ahead.hpp).
 template <class L>
 concept ScaleFreeLaw = requires(const L law) {
   { law.scale_free() } -> std::same_as<bool>;

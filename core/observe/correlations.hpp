@@ -21,7 +21,7 @@
 #include "cradle/core/chains/anchor.hpp"
 #include "cradle/core/chains/configuration.hpp"
 #include "cradle/core/observe/batch_means.hpp"
-#include "cradle/core/observe/octave_steps.hpp"
+#include "cradle/core/observe/histograms.hpp"
 
 namespace cradle {
 
@@ -99,7 +99,7 @@ class Correlator {
     sums_.assign(lags(longest).size() * mean_batches * 2, 0);
   }
 
-  // 0 and the steps of octave_steps.hpp.
+  // 0 and octave_steps (histograms.hpp).
   static std::vector<std::uint64_t> lags(std::uint64_t longest) {
     std::vector<std::uint64_t> all = octave_steps(longest);
     all.insert(all.begin(), 0);

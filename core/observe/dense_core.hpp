@@ -17,7 +17,6 @@
 #include <utility>
 #include <vector>
 
-#include "cradle/core/chains/configuration.hpp"
 #include "cradle/core/observe/configuration_statistics.hpp"
 
 namespace cradle {

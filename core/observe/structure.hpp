@@ -19,7 +19,7 @@
 #include <vector>
 
 #include "cradle/core/laws/turns.hpp"
-#include "cradle/core/observe/octave_steps.hpp"
+#include "cradle/core/observe/histograms.hpp"
 #include "cradle/core/observe/profile.hpp"
 
 namespace cradle {

@@ -16,10 +16,7 @@
 // which it crosses. If two segments have such collisions in one time slab, the plain loop computes the slab.
 
 #include <algorithm>
-#include <cstddef>
 #include <tuple>
-#include <utility>
-#include <vector>
 
 #include "cradle/core/chains/cluster_chain.hpp"
 #include "cradle/core/parallel/segment.hpp"
@@ -52,6 +49,7 @@ template <Real T> class ClusterSegment {
     std::vector<CellsInARow> cells;        // of the segment's own that there are still, in `after`
     std::vector<T> carried;                // mass across the seam
     ClusterFront left_front, right_front;  // at the ends of a line
+    auto logs() { return std::tie(this->left, this->right, carried); }
   };
 
   explicit ClusterSegment(const Chain& chain) : line_(chain.line(), 0) {}
@@ -278,6 +276,7 @@ template <Real T> class ClusterSegment {
 
   // ---- for steps (steps/stepped_clusters.hpp)
   template <class Law, class Part> friend struct Stepped;
+  template <class Part> friend class AroundSteps;
   // What collisions at edges change.
   auto edges() { return std::tie(own_first_, own_last_, reached_left_, reached_right_, farthest_, seam_); }
 

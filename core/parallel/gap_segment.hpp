@@ -3,9 +3,7 @@
 // the gaps i - 1, i and i + 1. At a cut it is logged by which gap it was at, exact time and closing speed.
 
 #include <algorithm>
-#include <cstddef>
-#include <utility>
-#include <vector>
+#include <tuple>
 
 #include "cradle/core/chains/gap_chain.hpp"
 #include "cradle/core/parallel/segment.hpp"
@@ -26,6 +24,7 @@ template <Real T, class Masses> class GapSegment {
   using Observed = ObservedCollision<T>;
   struct Report : SegmentReport<T, GapCollision<T>, Observed> {
     FrontMove<T> to_left, to_right;  // at the ends of a line
+    auto logs() { return std::tie(this->left, this->right, this->observed, to_left.at_end, to_right.at_end); }
   };
 
   explicit GapSegment(const Chain& chain) : line_(chain.line(), 0), wall_gaps_(chain.wall_gaps()) {}
@@ -35,14 +34,10 @@ template <Real T, class Masses> class GapSegment {
   Slot last() const { return last_; }
   Slot left(Slot s) const { return s - 1; }
   Slot right(Slot s) const { return s + 1; }
-  T due(Slot s) const {
-    if constexpr (!Gaps::keys_are_exact)
-      if (wall_gaps_.pulls(line_.particle(s))) return wall_gaps_.due(line_, s).value_or(far_away<T>());
-    return line_.due(s);
-  }
+  T due(Slot s) const { return wall_gaps_.due(line_, s); }
   double queue_key(Slot s) {
     if constexpr (!Gaps::keys_are_exact)
-      if (wall_gaps_.pulls(line_.particle(s))) return wall_gaps_.queue_due(line_, s);
+      if (wall_gaps_.pulls(line_.particle(s))) return wall_gaps_.pulled_queue_due(line_, s);
     return line_.gaps.queue_key(s, line_.closing(s));
   }
   double queue_time(const T& local) const { return line_.gaps.queue_time(local); }
@@ -72,8 +67,9 @@ template <Real T, class Masses> class GapSegment {
     const auto beside = [&](bool at_end, std::size_t within_reach, std::size_t held) {
       return is_ring_ ? 0 : chain.on_ring() ? ghosts : std::min(ghosts, at_end ? within_reach : held);
     };
-    const std::size_t before = beside(left_end_, chain.within_reach_left(), own.first - chain.first());
-    const std::size_t behind = beside(right_end_, chain.within_reach_right(), chain.last() + 1 - own.first - own.gaps);
+    const std::size_t before = beside(left_end_, chain.range().free_left(), own.first - chain.first());
+    const std::size_t behind =
+        beside(right_end_, chain.range().free_right(chain.slots()), chain.last() + 1 - own.first - own.gaps);
     own_first_ = first_ + before;
     own_last_ = own_first_ + own.gaps - 1;
     last_ = own_last_ + behind;
@@ -92,8 +88,8 @@ template <Real T, class Masses> class GapSegment {
       line_.load(s, chain.particles(), start), line_.load_mass(s + 1, chain.particles());
     line_.block(first_ - 1);
     line_.block(last_ + 1);
-    reached_left_ = left_end_ ? here(chain.front_slot_left()) : own_first_;
-    reached_right_ = right_end_ ? here(chain.front_slot_right()) : own_last_;
+    reached_left_ = left_end_ ? here(chain.range().front_left()) : own_first_;
+    reached_right_ = right_end_ ? here(chain.range().front_right()) : own_last_;
     set_inner();
     return true;
   }
@@ -157,10 +153,7 @@ template <Real T, class Masses> class GapSegment {
     }
   }
 
-  T closing_when_due(Slot s) const {
-    const auto meeting = wall_gaps_.pulls(line_.particle(s)) ? wall_gaps_.meeting(line_, s) : std::nullopt;
-    return meeting ? meeting->speed : line_.closing(s);
-  }
+  T closing_when_due(Slot s) const { return wall_gaps_.closing_when_due(line_, s); }
   template <class Law> [[gnu::noinline]] Outcome<T> at_wall(const Law& law, Slot s, const T& time) {
     const ParticleIndex gap = line_.particle(s);
     const T& mass = line_.masses[walls_.left_of(gap) ? s + 1 : s];
@@ -212,21 +205,13 @@ template <Real T, class Masses> class GapSegment {
 
   // ---- for steps (steps/stepped.hpp)
   template <class Law, class Part> friend struct Stepped;
+  template <class Part> friend class AroundSteps;
   bool curved() const { return wall_gaps_.anywhere(); }
   template <class Law> Outcome<T> outcome_at_edge(const Law& law, Slot s, const T& time) {
     return walls_.beside(line_.particle(s)) ? at_wall(law, s, time) : law(line_.closing(s), line_.masses.of_pair(s));
   }
   // What collisions at edges change.
-  struct Edges {
-    Slot reached_left, reached_right;
-    Walls<T> walls;
-  };
-  Edges edges() const { return {reached_left_, reached_right_, walls_}; }
-  void set_edges(const Edges& edges) {
-    reached_left_ = edges.reached_left, reached_right_ = edges.reached_right;
-    walls_ = edges.walls;
-    set_inner();
-  }
+  auto edges() { return std::tie(reached_left_, reached_right_, walls_); }
 
   GapLine<T, Masses> line_;
   Slot own_first_ = 0, own_last_ = 0, last_ = 0;

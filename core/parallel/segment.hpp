@@ -11,12 +11,11 @@
 #include <cstdint>
 #include <vector>
 
-#include "cradle/core/chains/collision_result.hpp"
+#include "cradle/core/chains/chain.hpp"
 #include "cradle/core/engine/status.hpp"
 #include "cradle/core/engine/ties.hpp"
 #include "cradle/core/parallel/observed.hpp"
 #include "cradle/core/parallel/steps/steps.hpp"
-#include "cradle/core/queue/event_queue.hpp"
 #include "cradle/core/queue/ledger.hpp"
 
 namespace cradle {

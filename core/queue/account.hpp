@@ -1,5 +1,6 @@
 #pragma once
-// The account counts what a run could not resolve; nothing is clamped or skipped.
+// The account counts what a run could not resolve; nothing is clamped or skipped. Its numbers are of the scalar type,
+// or of what stands for that in a report.
 
 #include <cstdint>
 #include <tuple>
@@ -9,14 +10,14 @@
 namespace cradle {
 
 // The place and time of an event in a run that a report names.
-template <Real T> struct Incident {
+template <class T> struct Incident {
   T time{0};
   ParticleIndex particle = -1;  // the particle on the left of the gap
   T gap{0};
   static auto state(auto& self) { return std::tie(self.time, self.particle, self.gap); }
 };
 
-template <Real T> struct Account {
+template <class T> struct Account {
   // Gaps that were zero, or negative by no more than rounding, at a neighbouring collision: three particles met. The
   // tie rule (earlier time, then further left) decides the outcome.
   std::uint64_t simultaneous = 0;

@@ -9,16 +9,25 @@
 // better than that.
 #pragma once
 
-#include "cradle/core/theory/cluster_force.hpp"
+#include "cradle/core/theory/wet_shock.hpp"
 
 #include <algorithm>
 #include <array>
+#include <concepts>
 #include <cstddef>
 #include <limits>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace cradle::theory {
+
+/// A force in regions divided by increasing edges, smooth in each of them and a little beyond.
+template <class F>
+concept PiecewiseForce = requires(const F force, std::size_t region, double x) {
+  { force.edges() } -> std::convertible_to<std::span<const double>>;
+  { force(region, x) } -> std::same_as<double>;
+};
 
 /// Where two clusters meet: the wet rule decides (they pass if mu w^2/2 > E_loss, which it costs, else stick); they
 /// pass freely, as if (16) were all there is; or they stick.

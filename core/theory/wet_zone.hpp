@@ -1,6 +1,6 @@
 // The linear model of the late wet shock: a stationary zone |x| < L in which incoming particles are slowed from u0 to
 // the critical speed u_crit, and the force it exerts on a heavy cluster. "Dry and wet granular shock waves", section
-// VI, equations (9) to (15), corrected. n0 = 1/l; k = n~/n0, the excess of density in the zone.
+// VI, equations (9) to (15) and (17), corrected. n0 = 1/l; k = n~/n0, the excess of density in the zone.
 //   (9)  u_+ = -a x + b, a = (u0 - u_crit)/2L, b = (u0 + u_crit)/2        (10) n_+ = n0 (1 + k/2 + k x/2L)
 //   (12) energy balance (11): L = m u0^2/[2 E_loss n0 (k^2/6 + k + 1)]
 //   (13) slowing down of one particle: L = m u0^2/[2 E_loss n0 (2 + k)]
@@ -14,6 +14,9 @@
 
 #include "cradle/core/theory/wet_shock.hpp"
 
+#include <array>
+#include <cstddef>
+#include <span>
 #include <stdexcept>
 
 namespace cradle::theory {
@@ -126,6 +129,43 @@ template <class T> class WetZone {
 
   WetShock<T> shock_;
   T excess_, slow_, half_width_{0}, piston_critical_{0};
+};
+
+/// Equations (14) and (15): left of the zone, in it, right of it.
+class ZoneForce {
+ public:
+  explicit ZoneForce(const WetZone<double>& zone) : zone_(zone), edges_{-zone.half_width(), zone.half_width()} {}
+  std::span<const double> edges() const { return edges_; }
+  double operator()(std::size_t region, double x) const {
+    if (region == 1) return zone_.inner_force(x);
+    return region == 0 ? zone_.row_force() : -zone_.row_force();
+  }
+
+ private:
+  WetZone<double> zone_;
+  std::array<double, 2> edges_;
+};
+
+/// Equation (17): -alpha sgn x.
+class SignForce {
+ public:
+  explicit SignForce(double alpha) : alpha_(alpha) {}
+  std::span<const double> edges() const { return edges_; }
+  double operator()(std::size_t region, double) const { return region == 0 ? alpha_ : -alpha_; }
+
+ private:
+  double alpha_;
+  std::array<double, 1> edges_{0};
+};
+
+/// Exponents of time of amplitude, frequency, speed and energy in equation (17), M x'' = -alpha sgn x with M = m (1 + r
+/// t), for r t >> 1. With g = alpha/M it is x'' = -g(t) sgn x, a Hamiltonian v^2/2 + g |x| that changes slowly, so the
+/// area of the orbit, proportional to u x = sqrt(2 g x) x at amplitude x, is an adiabatic invariant: x ~ g^(-1/3) ~
+/// t^(1/3), omega ~ sqrt(g/x) ~ t^(-2/3), u ~ sqrt(g x) ~ t^(-1/3), M u^2 ~ t^(1/3). If the mass were taken up at rest,
+/// d(M x')/dt = -alpha sgn x, the invariant would be M u x and the oscillations would die out, x ~ t^(-1/3): the
+/// paper's exponents are those of M x''.
+struct OscillationExponents {
+  double amplitude = 1. / 3, frequency = -2. / 3, speed = -1. / 3, energy = 1. / 3;
 };
 
 }  // namespace cradle::theory

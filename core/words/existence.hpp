@@ -1,7 +1,7 @@
 #pragma once
 // The restitutions for which a word has a self-similar state are found approximately, then proved.
 //
-//   scan      at many restitutions (search.hpp): eigenvalues, signs of the margins. An interval narrower than the grid
+//   scan      at many restitutions (ranges.hpp): eigenvalues, signs of the margins. An interval narrower than the grid
 //             is missed.
 //   end       where a margin changes its sign, by the secant method in a long type
 //   proof     balls of restitutions, one beside the other from the middle to the ends, in each of which all margins are
@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-#include "cradle/core/words/search.hpp"
+#include "cradle/core/words/state.hpp"
 
 namespace cradle::words {
 

@@ -13,7 +13,6 @@
 #include "cradle/core/observe/guards.hpp"
 #include "cradle/core/observe/sample.hpp"
 #include "cradle/tests/core/fixtures.hpp"
-#include "cradle/tests/core/observe/placed.hpp"
 
 namespace cradle::test {
 
@@ -53,17 +52,6 @@ template <class Run> bool guards_hold(const Run& run, const Particles<double>& p
   return !guarded(run.configuration(t), particles, run.counts().collisions,
                   particles.mechanical_energy() - run.energy_lost(t) + off, t, run.last_collision_time(), 0., true)
               .broken;
-}
-
-// The mean of `value(t)` over many blocks of times, after the first four, and its standard error.
-template <class Value> PlainMean block_mean(int blocks, int samples, double spacing, const Value& value) {
-  std::vector<double> means;
-  for (int block = -4; block < blocks; ++block) {
-    double mean = 0;
-    for (int k = 0; k < samples; ++k) mean += value(spacing * ((block + 4.) * samples + k + 1)) / samples;
-    if (block >= 0) means.push_back(mean);
-  }
-  return mean_of(means);
 }
 
 }  // namespace cradle::test

@@ -1,11 +1,14 @@
 #pragma once
-// Compares runs: states bit for bit, and sequences of collisions if their order matters. Collisions at gaps that are
-// not neighbours commute, so two runs made the same collisions if the order is the same at every two neighbouring gaps.
+// Compares runs: states bit for bit, also of what continues from a saved one, and sequences of collisions if their
+// order matters. Collisions at gaps that are not neighbours commute, so two runs made the same collisions if the order
+// is the same at every two neighbouring gaps.
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <initializer_list>
 #include <map>
+#include <stdexcept>
 #include <vector>
 
 #include "cradle/core/base/state.hpp"
@@ -78,6 +81,45 @@ template <class T> T largest_difference(const std::vector<T>& a, const std::vect
     largest = std::max(largest, difference);
   }
   return largest;
+}
+
+// A run or an observer that continues from the state of another one.
+template <class X> void restore(X& later, const X& saved) {
+  SavedState state = SavedState::of(saved);
+  load(state, later);
+  EXPECT_EQ(state.left(), 0U);
+}
+
+// Saves a run every `step` and continues it with a new run from make(): the bits must be those of the uninterrupted
+// run.
+template <class Make, class Check>
+void expect_same_from_anywhere(const Make& make, double step, double end, const Check& check) {
+  for (double cut = 0; cut < end; cut += step) {
+    SCOPED_TRACE(cut);
+    auto whole = make(), later = make();
+    whole.advance(cut);
+    restore(later, whole);
+    EXPECT_TRUE(SavedState::of(later) == SavedState::of(whole));
+    whole.advance(end);
+    later.advance(end);
+    EXPECT_TRUE(SavedState::of(later) == SavedState::of(whole));
+    check(later, whole);
+  }
+}
+
+// The same of an observer, as it is before the first of so many samples; `add(observer, k)` adds number k. The state of
+// the complete one must be refused by all of `others`, which have other sizes.
+template <class Observer, class Add>
+void expect_continues(Observer whole, std::size_t samples, std::size_t cut, const Add& add,
+                      std::initializer_list<Observer> others) {
+  Observer later = whole;
+  for (std::size_t k = 0; k < samples; ++k) {
+    if (k == cut) restore(later, whole);
+    add(whole, k);
+    if (k >= cut) add(later, k);
+  }
+  EXPECT_TRUE(SavedState::of(later) == SavedState::of(whole));
+  for (Observer other : others) EXPECT_THROW(restore(other, whole), std::invalid_argument);
 }
 
 }  // namespace cradle::test

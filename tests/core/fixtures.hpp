@@ -1,16 +1,23 @@
 #pragma once
 // Initial states that several tests share, and the runs made from them. Both fixtures perturb their particles by a hash
-// (the finaliser of splitmix64) and are exact in double: every scalar type starts from the same numbers.
+// (the finaliser of splitmix64) and are exact in double: every scalar type starts from the same numbers. Also states of
+// runs placed by hand, and means of them.
 //
 //   rmix    x_i = i + (h & 0x3FF)/2048,  v_i = (((h >> 20) & 0x3FFF) - 8192)/8192
 //   rshock  x_i = (2 i - N + 1)/2 + ((h & 0x3FFFF) - 131072)/2^28,  v = +u0 for i < N/2, else -u0
 
+#include <array>
+#include <cmath>
 #include <memory>
+#include <numeric>
 #include <optional>
+#include <ostream>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "cradle/core/base/counter_rng.hpp"
+#include "cradle/core/chains/configuration.hpp"
 #include "cradle/core/chains/gap_chain.hpp"
 #include "cradle/core/chains/position_chain.hpp"
 #include "cradle/core/engine/simulation.hpp"
@@ -133,6 +140,21 @@ template <class T = double> Scene<T> three_particles(std::vector<T> m = {}) {
   return list<T>({T(0), T(1), T(3)}, {T(1), T(0), T(-1)}, std::move(m));
 }
 
+// Their collapse in numbers (McNamara and Young, Phys. Fluids A 4, 496 (1992), evaluated to 40 digits).
+struct ThreeCollapse {
+  const char *eps, *collapse_time;
+  std::array<std::uint64_t, 4> passes;  // collision at which the gap is first below 1e-16, 1e-34, 1e-100, 1e-300
+  std::uint64_t plain_clock_stops;      // last collision that moves a plain clock, in double
+
+  double restitution() const { return std::stod(eps); }
+  friend void PrintTo(const ThreeCollapse& r, std::ostream* out) { *out << "eps=" << r.eps; }
+};
+inline constexpr ThreeCollapse three_collapses[] = {
+    {"0.05", "1.714285714285714285714285714285714285714285714286", {18, 38, 111, 333}, 31},
+    {"0.01", "1.6736937682559527405521559675474991365441632665957", {11, 21, 61, 179}, 13},
+    {"0.0625", "1.7377984054260977582367587110958928498213699562943", {22, 45, 133, 398}, 49},
+};
+
 struct Options {
   bool hold_all = false;
   int least_queue_bits = 3;
@@ -154,6 +176,31 @@ template <class T, class Law>
 Simulation<T, Law, PositionChain<T>> position_run(const Scene<T>& particles, const Law& law, Policy<T> policy = {},
                                                   const T& start = T(0)) {
   return {law, PositionChain<T>(particles, start), std::move(policy)};
+}
+
+// A configuration of particles placed by hand: all have collided; masses are 1 if none are given.
+inline Configuration<double> placed(std::vector<double> x, std::vector<double> v, std::vector<double> m = {}) {
+  Configuration<double> c;
+  c.x = std::move(x), c.v = std::move(v);
+  c.m = m.empty() ? std::vector<double>(c.x.size(), 1.) : std::move(m);
+  c.index.resize(c.x.size());
+  std::iota(c.index.begin(), c.index.end(), 0);
+  c.to = static_cast<ParticleIndex>(c.x.size()) - 1;
+  c.collided_to = c.x.size();
+  for (std::size_t j = 0; j + 1 < c.x.size(); ++j) c.gap.push_back(c.x[j + 1] - c.x[j]);
+  return c;
+}
+
+// The mean and its error in the plainest way.
+struct PlainMean {
+  double mean, error;  // one standard error
+};
+inline PlainMean mean_of(const std::vector<double>& values) {
+  const auto n = static_cast<double>(values.size());
+  const double mean = std::accumulate(values.begin(), values.end(), 0.) / n;
+  double squares = 0;
+  for (const double x : values) squares += (x - mean) * (x - mean);
+  return {mean, std::sqrt(squares / (n * (n - 1)))};
 }
 
 template <class Run, class T> auto configuration_at(const Run& run, const T& time) {

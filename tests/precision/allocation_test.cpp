@@ -5,14 +5,17 @@
 // blocks of memory for every few dozen collisions.
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cstdint>
 #include <cstdlib>
 
 #include "cradle/core/chains/cluster_chain.hpp"
 #include "cradle/tests/core/fixtures.hpp"
-#include "cradle/tests/precision/counted_heap.hpp"
 #include "cradle/tests/precision/every_scalar.hpp"
 
+namespace cradle::test {
+extern std::atomic<std::uint64_t> allocations;  // how many until now (counted_heap.cpp)
+}
 namespace cradle::test::allocation_test {
 
 #ifdef CRADLE_WITH_MPFR

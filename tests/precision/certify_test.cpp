@@ -1,7 +1,10 @@
 // The checker of proofs, scene by scene: what is open and what is refuted, with walls too; collisions of long runs side
 // by side are those of one by one; the averaged errors of a restitution that depends on the speed; exp(-x^s) lies in
 // its ball. (Scenes drawn at random: certify_drawn_test.cpp.)
+#include <algorithm>
 #include <memory>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -11,7 +14,6 @@
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/precision/drawn_scenes.hpp"
 #include "cradle/tests/precision/every_scalar.hpp"
-#include "cradle/tests/precision/side_by_side.hpp"
 
 namespace cradle::test::certify_test {
 
@@ -122,6 +124,77 @@ TEST(CertifyWalls, AMassBetweenTwoDoublesHasNoCertainRandomSpeed) {
 }
 
 // ---- collisions side by side
+
+// One checker is given collisions one by one, another one in pieces: all that they know is the same, to the bit.
+struct Known {
+  std::uint64_t collisions, in_doubles, below_cutoff;
+  std::vector<double> numbers;
+  friend bool operator==(const Known&, const Known&) = default;
+};
+void add(std::vector<double>& to, const B& x) {
+  to.insert(to.end(), {x.middle().high(), x.middle().low(), x.radius()});
+}
+Known known(const Checker<B>& checker) {
+  Known all{checker.proved().collisions, checker.proved().in_doubles, checker.proved().below_cutoff, {}};
+  checker.for_each(B(0),
+                   [&](ParticleIndex, const B&, const B& x, const B& v) { add(all.numbers, x), add(all.numbers, v); });
+  const auto last = checker.state_now();
+  add(all.numbers, last.time), add(all.numbers, last.closing), add(all.numbers, last.energy);
+  for (const auto& account : last.walls) add(all.numbers, account.given);
+  return all;
+}
+
+void compare_side_by_side(const std::shared_ptr<const Particles<B>>& particles, const CertainLaw<B>& law,
+                          const Collisions& collisions, std::size_t piece, bool proves) {
+  Checker<B> one(particles, law), many(particles, law);
+  std::optional<Doubt<B>> doubt;
+  std::optional<DoubtAt<B>> at;
+  for (std::size_t k = 0; k < collisions.size() && !doubt; k += piece) {
+    const std::span<const Checker<B>::Pair> some =
+        std::span(collisions).subspan(k, std::min(piece, collisions.size() - k));
+    at = many.collisions(some);
+    std::size_t number = 0;
+    for (; number < some.size() && !doubt; ++number) doubt = one.collision(some[number].first, some[number].second);
+    ASSERT_EQ(doubt.has_value(), at.has_value());
+    if (!doubt) {
+      if (k % 97 < piece || k + piece >= collisions.size()) {
+        ASSERT_EQ(known(one), known(many));
+      }
+      continue;
+    }
+    EXPECT_EQ(at->number + 1, number);
+    EXPECT_EQ(at->doubt.check, doubt->check);
+    EXPECT_EQ(at->doubt.refuted, doubt->refuted);
+    EXPECT_EQ(at->doubt.left, doubt->left);
+    EXPECT_EQ(at->doubt.right, doubt->right);
+    std::vector<double> quantities, of_one;
+    add(quantities, at->doubt.first), add(quantities, at->doubt.second);
+    add(of_one, doubt->first), add(of_one, doubt->second);
+    EXPECT_EQ(quantities, of_one);
+    EXPECT_EQ(many.proved().collisions, one.proved().collisions);
+    EXPECT_EQ(many.proved().in_doubles, one.proved().in_doubles);
+    EXPECT_EQ(many.proved().below_cutoff, one.proved().below_cutoff);
+  }
+  EXPECT_EQ(doubt.has_value(), !proves);
+}
+
+TEST(Certify, SideBySideCollisionsOfDrawnScenesAreThoseOfOneByOne) {
+  std::uint64_t on_walls = 0;
+  for (const auto draw_scene :
+       {draw, draw_by<GasLaw::sticky>, draw_wet, draw_with_walls, draw_speed_dependent, draw_falling})
+    for (std::uint64_t number = 0; number < 500; ++number) {
+      SCOPED_TRACE(number);
+      Drawn d = draw_scene(number);
+      if (d.walls[0] || d.walls[1]) d.masses.assign(d.masses.size(), 64);
+      const Collisions collisions = made(d);
+      Checker<B> checker(particles_of<B>(d), law_of(d));
+      const bool proves = proved_in_order(checker, collisions);
+      compare_side_by_side(particles_of<B>(d), law_of(d), collisions, 1 + number % 50, proves);
+      if (!proves) continue;
+      for (const auto& account : checker.state_at(B(until)).walls) on_walls += account.collisions;
+    }
+  EXPECT_GE(on_walls, 1500U);
+}
 
 struct Proposed {
   std::shared_ptr<const Particles<B>> particles;

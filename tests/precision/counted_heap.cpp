@@ -1,11 +1,14 @@
-// The global operators new and delete, with a count. (Those of arrays call these.)
-#include "cradle/tests/precision/counted_heap.hpp"
-
+// The global operators new and delete, with a count. (Those of arrays call these.) Compiled separately: if the compiler
+// sees both operators, it warns that the memory of `new` is freed in the wrong way.
+#include <atomic>
 #include <cstddef>
+#include <cstdint>
 #include <cstdlib>
 #include <new>
 
-std::atomic<std::uint64_t> cradle::test::allocations{0};
+namespace cradle::test {
+std::atomic<std::uint64_t> allocations{0};
+}
 
 namespace {
 

@@ -11,6 +11,7 @@
 #include <boost/multiprecision/mpfr.hpp>
 
 #include <algorithm>
+#include <functional>
 #include <random>
 
 #include "cradle/precision/double_double.hpp"
@@ -80,10 +81,10 @@ template <class Operation> double worst_of(std::uint64_t seed, int spread, Opera
   return worst;
 }
 
-const auto plus = [](const auto& x, const auto& y) { return x + y; };
-const auto minus = [](const auto& x, const auto& y) { return x - y; };
-const auto times = [](const auto& x, const auto& y) { return x * y; };
-const auto over = [](const auto& x, const auto& y) { return x / y; };
+constexpr std::plus<> plus;
+constexpr std::minus<> minus;
+constexpr std::multiplies<> times;
+constexpr std::divides<> over;
 const auto root = []<class T>(const T& x, const T&) { return sqrt(x < T(0) ? T(-x) : x); };
 
 // Over operands of like and of any size; by chance alone errors reach so much.
@@ -176,7 +177,7 @@ TEST(DoubleDouble, OrderIsThatOfTheNumbers) {
   EXPECT_GT(Limits::infinity(), Limits::max());
 }
 
-// As in every type: limits_test.cpp.
+// As in every type: scalars_test.cpp.
 TEST(DoubleDouble, LimitsAreWhatOperationsKeep) {
   EXPECT_EQ(Limits::epsilon().high(), 4 * u * u);  // a quotient may be off by 15/4 of it
   EXPECT_EQ(Limits::max().high() + Limits::max().low(), Limits::max().high());

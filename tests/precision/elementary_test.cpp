@@ -6,7 +6,6 @@
 
 #include "cradle/core/laws/law.hpp"
 #include "cradle/tests/precision/every_scalar.hpp"
-#include "cradle/tests/precision/reference.hpp"
 
 namespace cradle::test::elementary_test {
 

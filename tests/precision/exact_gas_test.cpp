@@ -32,60 +32,51 @@ template <Drawn (*draw_many)(std::uint64_t)> Drawn draw_few_too(std::uint64_t nu
 
 // Every tenth scene has all particles meet in one point, at t = 1.
 Drawn draw_sticky_too(std::uint64_t number) {
-  Drawn d = draw_few_too<draw_sticky>(number);
+  Drawn d = draw_few_too<draw_by<GasLaw::sticky>>(number);
   int place = 0;
   for (std::size_t b = 0; b < d.gaps.size() && number % 10 == 0; place += d.gaps[b++]) d.velocities[b] = 192 - place;
   return d;
 }
 
 const Family families[] = {
-    {"Inelastic", draw_few_too<draw>, 200, {300, 1000, 0, 50}},
-    {"WithAContactTime", draw_few_too<draw>, 200, {300, 1000, 0, 100}, GasLaw::contact_time},
-    {"WithWalls", draw_few_too<draw_with_walls>, 200, {300, 1500, 0, 0, 800}},
-    {"Sticky", draw_sticky_too, 300, {250, 500, 500}, GasLaw::sticky},
-    {"Merging", draw_few_too<draw>, 300, {250, 500, 120}, GasLaw::merging},
-    {"Wet", draw_few_too<draw_wet>, 300, {250, 500, 100}, GasLaw::wet},
-    {"SpeedDependent", draw_few_too<draw_speed_dependent>, 100, {100, 500}},
-    {"Falling", draw_falling, 200, {300, 1000, 0, 10, 500}},
-    {"FallingWithAContactTime", draw_falling, 100, {150, 500, 0, 50, 250}, GasLaw::contact_time},
-    {"BetweenShakenWalls", draw_shaken, 200, {300, 1000, 0, 10, 500}},
-    {"Resting", draw_resting, 200, {.runs = 150, .collisions = 1000, .on_walls = 500, .rested = 300, .let_go = 40}},
+    {"Inelastic", draw_few_too<draw>, 200, {{"runs", 300}, {"collisions", 1000}, {"below cut-off", 50}}},
+    {"WithAContactTime",
+     draw_few_too<draw_by<GasLaw::contact_time>>,
+     200,
+     {{"runs", 300}, {"collisions", 1000}, {"below cut-off", 100}}},
+    {"WithWalls", draw_few_too<draw_with_walls>, 200, {{"runs", 300}, {"collisions", 1500}, {"walls", 800}}},
+    {"Sticky", draw_sticky_too, 300, {{"runs", 250}, {"collisions", 500}, {"merges", 500}}},
+    {"Merging", draw_few_too<draw_by<GasLaw::merging>>, 300, {{"runs", 250}, {"collisions", 500}, {"merges", 120}}},
+    {"Wet", draw_few_too<draw_wet>, 300, {{"runs", 250}, {"collisions", 500}, {"merges", 100}}},
+    {"SpeedDependent", draw_few_too<draw_speed_dependent>, 100, {{"runs", 100}, {"collisions", 500}}},
+    {"Falling", draw_falling, 200, {{"runs", 300}, {"collisions", 1000}, {"below cut-off", 10}, {"walls", 500}}},
+    {"FallingWithAContactTime",
+     draw_by<GasLaw::contact_time, draw_falling>,
+     100,
+     {{"runs", 150}, {"collisions", 500}, {"below cut-off", 50}, {"walls", 250}}},
+    {"BetweenShakenWalls",
+     draw_shaken,
+     200,
+     {{"runs", 300}, {"collisions", 1000}, {"below cut-off", 10}, {"walls", 500}}},
+    {"Resting",
+     draw_resting,
+     200,
+     {{"runs", 150}, {"collisions", 1000}, {"walls", 500}, {"rested", 300}, {"let go", 40}}},
 };
 
-// No interval between two collisions is as long as this to the last digit.
-template <class T> T contact_time(const Drawn& d) { return T(d.cutoff + 1) / T(97); }
-template <class T> T merge_speed(const Drawn& d) { return T(d.cutoff) / T(16); }
-
-template <class T> Gas<T> gas_by(GasLaw law, const Drawn& d, bool ties) {
-  Gas<T> gas = gas_of<T>(d);
-  gas.law = law;
-  if (law == GasLaw::contact_time) gas.contact_time = contact_time<T>(d), gas.cutoff = 0;
-  if (law == GasLaw::merging) gas.merge_speed = merge_speed<T>(d), gas.cutoff = 0;
-  gas.ties_from_left = ties && !d.walls[0] && !d.walls[1] && !d.has_roots();
-  return gas;
-}
-
-// f(run) with a run in each chain that holds all of the scene, and in the gas without events. (Not in types that are
-// not meant for the law, which takes too long to compile.)
-template <class T, class F> void for_each_run(const Drawn& d, GasLaw kind, F f) {
+// f(run) with a run in each chain that holds all of the scene, and in the gas without events.
+template <class T, class F> void for_each_run(const Drawn& d, F f) {
   const auto particles = particles_of<T>(d);
-  const T restitution = coefficient<T>(d.restitution), threshold = T(d.cutoff) / T(64);
-  const auto merging = [&](const auto& law) { f(Simulation(law, ClusterChain<T>(particles, T(0), true))); };
-  const auto bouncing = [&](const auto& law) {
-    f(Simulation(law, GapChain<T, IndividualMasses<T>>(particles, T(0), true)));
-    if (particles->identical_masses() && !particles->fall()) f(Simulation(law, GapChain<T>(particles, T(0), true)));
-    if (!particles->on_ring() && !particles->holding()) f(Simulation(law, PositionChain<T>(particles, T(0))));
-  };
-  if (kind == GasLaw::inelastic && !d.exponent) bouncing(Inelastic<T>(restitution, threshold));
-  if (kind == GasLaw::contact_time) bouncing(ContactTime<T>(Inelastic<T>(restitution), contact_time<T>(d)));
-  if constexpr (!std::same_as<T, bin_float>) {
-    if (kind == GasLaw::sticky) merging(Sticky<T>()), f(StickyGas<T>(particles, T(0)));
-    if (kind == GasLaw::merging) merging(InelasticMerging<T>(Inelastic<T>(restitution), merge_speed<T>(d)));
-  }
-  if constexpr (!std::same_as<T, Rational>) {
-    if (kind == GasLaw::wet) merging(Wet<T>(T(d.loss) / T(64)));
-    if (d.exponent) bouncing(SpeedDependent<T>(restitution, threshold, coefficient<T>(d.exponent)));
-  }
+  with_law<T>(d, [&]<class Law>(const Law& law) {
+    if constexpr (Law::bounces_only) {
+      f(Simulation(law, GapChain<T, IndividualMasses<T>>(particles, T(0), true)));
+      if (particles->identical_masses() && !particles->fall()) f(Simulation(law, GapChain<T>(particles, T(0), true)));
+      if (!particles->on_ring() && !particles->holding()) f(Simulation(law, PositionChain<T>(particles, T(0))));
+    } else {
+      f(Simulation(law, ClusterChain<T>(particles, T(0), true)));
+      if constexpr (std::same_as<Law, Sticky<T>>) f(StickyGas<T>(particles, T(0)));
+    }
+  });
 }
 
 // Who is where, on a ring from the first particle right of 0.
@@ -175,9 +166,10 @@ INSTANTIATE_TEST_SUITE_P(, ExactGas, testing::ValuesIn(families), [](const auto&
 // Up to so many collisions: in rationals every inelastic one makes the numbers longer.
 constexpr std::uint64_t some = 8, most = 16;
 
-template <class T> void expect_scene(const Family& family, const Drawn& d, Totals& all) {
+template <class T> void expect_scene(const Drawn& d, Totals& all) {
   const auto particles = particles_of<T>(d);
-  const auto at_start = gas_by<T>(family.law, d, true);
+  auto at_start = gas_of<T>(d);
+  at_start.ties_from_left = !d.walls[0] && !d.walls[1] && !d.has_roots();
   const T later = T(1) / T(std::int64_t{1} << 60);  // than a collision: whose particles are at one place, or not yet
   auto half = at_start;
   half.advance(T(until) / 2, some);
@@ -185,7 +177,7 @@ template <class T> void expect_scene(const Family& family, const Drawn& d, Total
   end.advance(T(until), most);
   if (end.tied) return;
   half.advance(half.time + later), end.advance(end.time + later);
-  for_each_run<T>(d, family.law, [&](auto run) {
+  for_each_run<T>(d, [&](auto run) {
     Sequence seen, wanted;
     std::vector<T> times, wanted_times;
     for (auto gas = at_start; gas.next(end.time);) wanted.add(*gas.latest), wanted_times.push_back(gas.time);
@@ -199,12 +191,12 @@ template <class T> void expect_scene(const Family& family, const Drawn& d, Total
     }
     EXPECT_EQ(run.account().order_lost, 0U);
     if (has_events<decltype(run)>) expect_same(largest_difference(times, wanted_times), T(0));
-    if (!d.merges() && family.law != GasLaw::merging) {  // clusters go by other names there
+    if (d.bounces()) {  // clusters go by other names there
       EXPECT_EQ(seen, wanted);
     }
-    ++all.runs, all.collisions += end.collisions, all.merges += end.merges, all.below_cutoff += end.below_cutoff;
-    for (const auto& wall : end.walls) all.on_walls += wall ? wall->collisions : 0;
-    all.rested += end.rested, all.let_go += end.let_go;
+    ++all["runs"], all["collisions"] += end.collisions, all["merges"] += end.merges;
+    all["below cut-off"] += end.below_cutoff, all["rested"] += end.rested, all["let go"] += end.let_go;
+    for (const auto& wall : end.walls) all["walls"] += wall ? wall->collisions : 0;
   });
 }
 
@@ -213,27 +205,26 @@ TEST_P(ExactGas, HasTheMotionOfTheEngine) {
   for (std::uint64_t number = 0; number < GetParam().scenes && !HasFailure(); ++number) {
     SCOPED_TRACE(number);
     const Drawn d = GetParam().draw(number);
-    d.has_roots() ? expect_scene<bin_float>(GetParam(), d, all) : expect_scene<Rational>(GetParam(), d, all);
+    d.has_roots() ? expect_scene<bin_float>(d, all) : expect_scene<Rational>(d, all);
   }
-  all.expect_at_least(GetParam().least);
+  expect_at_least(all, GetParam().least);
 }
 
 template <class T, class Exact> double in_units(const Exact& error) {  // of the type's rounding
   return to_double(Exact(error / Exact(std::numeric_limits<T>::epsilon() / 2)));
 }
 // By how much the gas is off in this type; infinity if rounding decides what it does.
-template <class T, class Exact> double error_of_gas(const Family& family, const Drawn& d, const Gas<Exact>& exact) {
-  auto gas = gas_by<T>(family.law, d, false);
+template <class T, class Exact> double error_of_gas(const Drawn& d, const Gas<Exact>& exact) {
+  auto gas = gas_of<T>(d);
   gas.advance(T(to_double(exact.time)));
   if (gas.collisions != exact.collisions || gas.merges != exact.merges || gas.below_cutoff != exact.below_cutoff)
     return std::numeric_limits<double>::infinity();
   const auto last = static_cast<ParticleIndex>(d.gaps.size()) - 1;
   return in_units<T>(difference(state_of(gas, 0, last), state_of(exact, 0, last)));
 }
-template <class T, class Exact>
-void expect_errors(const Family& family, const Drawn& d, const Gas<Exact>& exact, double most_off) {
+template <class T, class Exact> void expect_errors(const Drawn& d, const Gas<Exact>& exact, double most_off) {
   const T time(to_double(exact.time));
-  for_each_run<T>(d, family.law, [&](auto run) {
+  for_each_run<T>(d, [&](auto run) {
     EXPECT_EQ(run.advance(time), Status::reached);
     EXPECT_EQ(run.counts().collisions, exact.collisions);
     EXPECT_EQ(run.counts().merges, exact.merges);
@@ -242,18 +233,16 @@ void expect_errors(const Family& family, const Drawn& d, const Gas<Exact>& exact
 }
 // The gas itself is off by as much in both types, to a factor of two or so; the engine rounds as often, other numbers.
 // Returns whether they were compared: where the gas is off by far more it would prove nothing.
-template <class Exact> bool expect_errors(const Family& family, const Drawn& d) {
-  auto first = gas_by<Exact>(family.law, d, false);
-  auto exact = first;
+template <class Exact> bool expect_errors(const Drawn& d) {
+  auto first = gas_of<Exact>(d), exact = first;
   first.advance(Exact(until), most);
   exact.advance(Exact(to_double(first.time) + 0x1p-40), most + 1);
   if (exact.tied || exact.collisions > most) return false;
   // A place of up to 64 is rounded by 32 units, twice.
-  const double units =
-      std::max({64., error_of_gas<double>(family, d, exact), error_of_gas<long double>(family, d, exact)});
+  const double units = std::max({64., error_of_gas<double>(d, exact), error_of_gas<long double>(d, exact)});
   if (units > 1000) return false;
-  expect_errors<double>(family, d, exact, 3 * units);
-  expect_errors<long double>(family, d, exact, 3 * units);
+  expect_errors<double>(d, exact, 3 * units);
+  expect_errors<long double>(d, exact, 3 * units);
   return true;
 }
 TEST_P(ExactGas, IsOffByAsMuchAsTheEngine) {
@@ -261,7 +250,7 @@ TEST_P(ExactGas, IsOffByAsMuchAsTheEngine) {
   for (std::uint64_t number = 0; number < GetParam().scenes && !HasFailure(); ++number) {
     SCOPED_TRACE(number);
     const Drawn d = GetParam().draw(number);
-    compared += d.has_roots() ? expect_errors<bin_float>(GetParam(), d) : expect_errors<Rational>(GetParam(), d);
+    compared += d.has_roots() ? expect_errors<bin_float>(d) : expect_errors<Rational>(d);
   }
   EXPECT_GT(compared, GetParam().scenes / 2);
 }

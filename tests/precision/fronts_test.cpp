@@ -28,7 +28,6 @@
 #include "cradle/core/theory/wet_shock.hpp"
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/precision/every_scalar.hpp"
-#include "cradle/tests/precision/reference.hpp"
 
 namespace cradle::test::fronts_test {
 

@@ -1,10 +1,17 @@
-// The conversion of the name of a precision to a type. Proves: every name gives its type; digits give the smallest MPFR
-// type that can hold them, which then works in that many bits; an unknown name is refused with advice.
+// The names and the limits of the scalar types. Proves: every name gives its type; digits give the smallest MPFR type
+// that can hold them, which then works in that many bits; an unknown name is refused with advice. std::numeric_limits
+// are those of the arithmetic: epsilon is the spacing for its digits; the least and the greatest number are those of
+// its exponents; infinity and NaN, if they are claimed, exist and behave as such; and for any numeric_limits a run
+// refuses to advance to an infinite time or to NaN, and can then continue. (In double-double a run to an infinite time
+// used to make no collisions, without a message; in double NaN overwrote memory.)
+#include <cmath>
 #include <concepts>
+#include <stdexcept>
 
 #include <gtest/gtest.h>
 
-#include "cradle/precision/scalars.hpp"
+#include "cradle/tests/core/fixtures.hpp"
+#include "cradle/tests/precision/every_scalar.hpp"
 #include "cradle/tests/texts.hpp"
 
 namespace cradle::test::scalars_test {
@@ -64,5 +71,86 @@ TEST(ScalarNames, MpfrWorksInTheBitsThatTheDigitsNeed) {
 #else
 TEST(ScalarNames, MpfrIsNotInThisBuild) { EXPECT_TRUE(has(refusal("mpfr", 50), "install libmpfr-dev")); }
 #endif
+
+// ---- limits
+
+template <class P> using EveryLimit = InPrecision<P>;
+TYPED_TEST_SUITE(EveryLimit, EveryPrecision, PrecisionName);
+
+// 2^exponent, by squaring: exponents go to 2^30.
+template <class T> T power_of_two(long exponent) {
+  T power(1), base = exponent < 0 ? T(T(1) / T(2)) : T(2);
+  for (long left = std::abs(exponent); left > 0; left /= 2) {
+    if (left % 2 == 1) power *= base;
+    if (left > 1) base *= base;
+  }
+  return power;
+}
+
+TYPED_TEST(EveryLimit, EpsilonIsWhatTheDigitsSay) {
+  using T = typename TypeParam::Scalar;
+  using Limits = std::numeric_limits<T>;
+  const T epsilon = Limits::epsilon();
+  EXPECT_TRUE(T(1) + epsilon > T(1) && T(1) - epsilon < T(1));
+  if constexpr (requires { Limits::digits; }) {
+    EXPECT_TRUE(epsilon == power_of_two<T>(1 - Limits::digits));
+    EXPECT_LE(Limits::digits10, (Limits::digits - 1) * std::log10(2));
+    EXPECT_GE(Limits::max_digits10, 1 + Limits::digits * std::log10(2));
+  }
+  // A double-double may hold a one and something far smaller: its epsilon is what operations keep, 2^-104.
+  if (!std::same_as<T, double_double>) {
+    EXPECT_TRUE(T(1) + epsilon / T(4) == T(1));
+  }
+}
+
+TYPED_TEST(EveryLimit, LeastAndGreatestAreWhatTheExponentsSay) {
+  using T = typename TypeParam::Scalar;
+  using Limits = std::numeric_limits<T>;
+  EXPECT_TRUE(Limits::lowest() == -Limits::max());
+  const long above = std::same_as<T, bin_float> ? 1 : 0;  // Boost 1.74 counts exponents from 1 instead of from 1/2
+  EXPECT_TRUE(Limits::min() == power_of_two<T>(Limits::min_exponent - 1 + above));
+  // Scaled down, since 2^max_exponent is beyond the range: no number fits between it and 1. (A low part is at most half
+  // a unit of the high one, and that is what a double-double lacks.)
+  const T share = Limits::max() * power_of_two<T>(1 - Limits::max_exponent - above) / T(2);
+  EXPECT_TRUE(share < T(1) && share >= T(1) - (std::same_as<T, double_double> ? T(0x1p-53) : Limits::epsilon()));
+}
+
+TYPED_TEST(EveryLimit, InfinityIsBeyondEveryNumber) {
+  using T = typename TypeParam::Scalar;
+  using Limits = std::numeric_limits<T>;
+  ASSERT_TRUE(Limits::has_infinity);
+  const T infinity = Limits::infinity();
+  EXPECT_TRUE(infinity > Limits::max() && -infinity < Limits::lowest());
+  EXPECT_TRUE(infinity == infinity && infinity != -infinity);
+  EXPECT_TRUE(is_positive(infinity) && is_negative(T(-infinity)));
+  if (!std::same_as<T, double_double>) {  // its parts cancel: see double_double.hpp
+    EXPECT_TRUE(T(1) / infinity == T(0));
+  }
+  EXPECT_EQ(to_double(infinity), std::numeric_limits<double>::infinity());
+}
+
+TYPED_TEST(EveryLimit, NanIsUnlikeEveryNumberAndItself) {
+  using T = typename TypeParam::Scalar;
+  using Limits = std::numeric_limits<T>;
+  ASSERT_TRUE(Limits::has_quiet_NaN);
+  const T nan = Limits::quiet_NaN();
+  EXPECT_FALSE(nan == nan);
+  for (const T& x : {T(0), T(1), Limits::infinity(), nan})
+    EXPECT_FALSE(nan == x || nan < x || nan > x || nan <= x || nan >= x);
+  EXPECT_TRUE(std::isnan(to_double(nan)) && std::isnan(to_double(T(nan + T(1)))));
+}
+
+TYPED_TEST(EveryLimit, OnlyNumbersAreTimes) {
+  using T = typename TypeParam::Scalar;
+  const T infinite = T(1) / T(0), undefined = T(0) / T(0), tiny = std::numeric_limits<T>::min();
+  EXPECT_TRUE(is_finite(T(0)) && is_finite(T(-7)) && is_finite(tiny) && is_finite(far_away<T>()));
+  auto run = gap_run<T>(list<T>({T(0), T(1), T(3)}, {T(1), T(0), T(-1)}), Inelastic<T>(T(1)));
+  for (const T& t : {infinite, T(-infinite), undefined}) {
+    EXPECT_FALSE(is_finite(t));
+    EXPECT_THROW(run.advance(t), std::invalid_argument);
+  }
+  EXPECT_EQ(run.advance(T(5)), Status::reached);
+  EXPECT_EQ(run.counts().collisions, 3U);
+}
 
 }  // namespace cradle::test::scalars_test

@@ -1,5 +1,5 @@
 // Shaken walls in every scalar type: pi, sine and cosine; whole numbers of any size; the search for a collision ends; a
-// column, in all types the same collisions. When gaps to them close: shaken_gaps_test.cpp.
+// column, in all types the same collisions. When gaps to them close: wall_gaps_test.cpp.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -11,7 +11,6 @@
 #include <string>
 
 #include "cradle/tests/precision/every_scalar.hpp"
-#include "cradle/tests/precision/reference.hpp"
 #include "cradle/tests/texts.hpp"
 
 namespace cradle::test::text_test {

@@ -112,9 +112,11 @@ class Answers : public ProgramTest, public testing::WithParamInterface<Inputs> {
     }
   }
 
-  // A command and what it prints.
+  // A command and what it prints. Status 77: what the case needs is not here.
   void try_out(const Command& command) const {
-    const Printed printed = shell(command.typed, command.status);
+    const Printed printed = shell(command.typed);
+    if (printed.status == 77) GTEST_SKIP() << "status 77: " << command.typed;
+    EXPECT_EQ(printed.status, command.status) << command.typed << "\n" << printed.out << printed.err;
     for (const std::string& line : command.printed) {
       const std::string text = line.substr(2);
       if (line.starts_with("+ "))
@@ -137,9 +139,10 @@ class Answers : public ProgramTest, public testing::WithParamInterface<Inputs> {
       std::filesystem::create_directories((folder / name).parent_path());
       write(name, input.text(name));
     }
-    std::for_each(input.commands.begin(), std::prev(input.commands.end()), [&](const auto& one) { try_out(one); });
     const Command& last = input.commands.back();
-    if (input.status == 0) return try_out(last), "";
+    for (const Command& one : input.commands)
+      if (!IsSkipped() && (&one != &last || input.status == 0)) try_out(one);
+    if (IsSkipped() || input.status == 0) return "";
     const auto before = files();
     const Printed printed = shell(last.typed, input.status);
     EXPECT_TRUE(files() == before) << "a file was made or changed";
@@ -151,6 +154,7 @@ class Answers : public ProgramTest, public testing::WithParamInterface<Inputs> {
 
 TEST_P(Answers, AreThoseOfTheTable) {
   for (const Input& input : GetParam().all) {
+    if (IsSkipped()) break;
     SCOPED_TRACE("line " + std::to_string(input.line));
     const std::string found = input.commands.empty() ? of_reading(input) : of_commands(input), wanted = input.message;
     if (wanted.ends_with("..."))

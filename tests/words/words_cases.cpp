@@ -27,7 +27,7 @@ class Words : public testing::Test {
  protected:
   Words() { MpfrPrecision::set_bits(MpfrPrecision::bits_for(120)); }
 
-  template <class N> static Shares<N> equal(std::size_t particles) {
+  template <class N> static words::Shares<N> equal(std::size_t particles) {
     return shares(std::vector<N>(particles, N(1)), {});
   }
   static Prover<Exact, Real> prover(const Word& word, std::size_t particles, bool mirrored = false) {
@@ -62,7 +62,7 @@ TEST_F(Words, HaveTheEndsThatAreKnownProvedTo30Digits) {
     EXPECT_TRUE(range.high_ends);
     EXPECT_LT(magnitude(Real(range.high.at - end)), number("1e-60"));
     // Existence is proved from 1e-32 on and up to 1e-32 below the end.
-    EXPECT_EQ(range.low.is, End<Real>::Is::zero);
+    EXPECT_EQ(range.low.is, words::End<Real>::Is::zero);
     EXPECT_TRUE(range.low_ends);
     EXPECT_LT(end - range.proved_high, number("1.1e-32"));
   }
@@ -75,7 +75,7 @@ TEST_F(Words, AbcbEndsAtARootOfAPolynomialOfDegree6) {
   ASSERT_EQ(found.size(), 1U);
   const Range<Real>& range = found.front();
   EXPECT_TRUE(range.high_ends);
-  EXPECT_EQ(range.high.is, End<Real>::Is::meeting);
+  EXPECT_EQ(range.high.is, words::End<Real>::Is::meeting);
   EXPECT_LT(range.high.at - range.proved_high, number("1.1e-32"));
   EXPECT_NEAR(to_double(range.high.at), 0.191659578393, 1e-12) << "as the prototype found it";
   Polynomial<Exact> p;

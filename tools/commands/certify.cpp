@@ -7,9 +7,6 @@
 
 #include "cradle/tools/commands/commands.hpp"
 #include "cradle/tools/proof/replicas.hpp"
-#include "cradle/tools/support/atomic_file.hpp"
-#include "cradle/tools/support/interrupt.hpp"
-#include "cradle/tools/support/notify.hpp"
 
 namespace cradle::tools {
 
@@ -29,8 +26,7 @@ Exit run_certify(const CertifyArguments& options) {
   const Scene scene = options.read();
   check_certifiable(scene);
   const std::string output = options.output_or(scene.name + "-certified.h5");
-  const FileClaim claim(output);
-  check_overwrite(output, options.command(), &scene, options.force());
+  const FileClaim claim = options.claim(output, options.command(), &scene);
   Interrupt interrupt;
   note_signals(interrupt);
   const CertifyOptions how{.digits = options.digits.empty() ? rising_digits() : options.digits,

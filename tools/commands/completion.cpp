@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <memory>
 #include <set>
 
 #include "cradle/tools/commands/commands.hpp"
@@ -88,10 +87,10 @@ Exit completion(const CommandLine& program, const CompletionArguments& arguments
 void add_completion(CommandLine& program) {
   Command command = program.add("completion", "completion of command lines, as a script for bash, zsh or fish",
                                 "source <(cradle completion bash)");
-  const auto arguments = std::make_shared<CompletionArguments>();
-  command.argument("SHELL", arguments->shell, "bash, zsh or fish; or words, which prints what may follow WORD");
-  command.arguments("WORD", arguments->words, "the words typed so far, behind --", Needed::no);
-  command.does([&program, arguments] { return completion(program, *arguments); });
+  auto& arguments = command.runs<CompletionArguments>(
+      [&program](const CompletionArguments& given) { return completion(program, given); });
+  command.argument("SHELL", arguments.shell, "bash, zsh or fish; or words, which prints what may follow WORD");
+  command.arguments("WORD", arguments.words, "the words typed so far, behind --", Needed::no);
 }
 
 }  // namespace cradle::tools

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "cradle/tools/commands/commands.hpp"
-#include "cradle/tools/ensemble/sweep.hpp"
+#include "cradle/tools/ensemble/study.hpp"
 #include "cradle/tools/result/difference.hpp"
 #include "cradle/tools/result/reader.hpp"
 #include "cradle/tools/setup/read_scene.hpp"

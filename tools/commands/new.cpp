@@ -7,7 +7,6 @@
 #include "cradle/tools/commands/commands.hpp"
 #include "cradle/tools/scene/fields.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
-#include "cradle/tools/support/atomic_file.hpp"
 
 namespace cradle::tools {
 

@@ -14,7 +14,6 @@
 #include "cradle/tools/commands/commands.hpp"
 #include "cradle/tools/result/reader.hpp"
 #include "cradle/tools/store/journal.hpp"
-#include "cradle/tools/support/atomic_file.hpp"
 
 namespace cradle::tools {
 

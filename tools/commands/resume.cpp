@@ -1,11 +1,8 @@
 #include <fmt/format.h>
 
-#include "cradle/tools/commands/study.hpp"
+#include "cradle/tools/commands/commands.hpp"
 #include "cradle/tools/ensemble/ensemble_store.hpp"
 #include "cradle/tools/store/run_files.hpp"
-#include "cradle/tools/support/atomic_file.hpp"
-#include "cradle/tools/support/interrupt.hpp"
-#include "cradle/tools/support/notify.hpp"
 
 namespace cradle::tools {
 
@@ -29,7 +26,9 @@ Exit resume(const ResumeArguments& options) {
     if (options.until)
       throw Error({"--until", 0, ""}, "an ensemble has no later end", *options.until, "give it a file of its own");
     return run_study_command(options.quiet, [&] {
-      return StudyPlan{study_in(*journal, path), {journal->wanted, options.threads, options.show()}, file};
+      const Error damaged({path}, "its scenes are not those of its replicas", "another identity",
+                          "take it from a copy, or remove it", Exit::io);
+      return StudyPlan{study_in(*journal, path, damaged), {journal->wanted, options.threads, options.show()}, file};
     });
   }
   Interrupt interrupt;

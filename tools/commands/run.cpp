@@ -6,9 +6,6 @@
 
 #include "cradle/tools/commands/commands.hpp"
 #include "cradle/tools/store/run_files.hpp"
-#include "cradle/tools/support/atomic_file.hpp"
-#include "cradle/tools/support/interrupt.hpp"
-#include "cradle/tools/support/notify.hpp"
 #include "cradle/tools/support/threads.hpp"
 #include "cradle/tools/theory/cost.hpp"
 
@@ -37,8 +34,7 @@ Exit run(const RunArguments& options) {
   check_built(scene);
   Interrupt interrupt;
   note_signals(interrupt);
-  const FileClaim claim(output);
-  check_overwrite(output, "run", &scene, options.force());
+  const FileClaim claim = options.claim(output, "run", &scene);
   RunFiles files(output, scene, options.force());
   return run_command(files, output, options, interrupt, options.quiet ? "" : expected_warning(scene));
 }

@@ -1,7 +1,6 @@
-#include "cradle/tools/ensemble/sweep.hpp"
+#include "cradle/tools/ensemble/study.hpp"
 
 #include "cradle/tools/commands/commands.hpp"
-#include "cradle/tools/commands/study.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
 
 namespace cradle::tools {

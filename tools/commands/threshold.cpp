@@ -3,8 +3,6 @@
 #include <unistd.h>
 
 #include "cradle/tools/commands/commands.hpp"
-#include "cradle/tools/support/atomic_file.hpp"
-#include "cradle/tools/support/interrupt.hpp"
 
 namespace cradle::tools {
 

@@ -7,8 +7,6 @@
 #include <functional>
 
 #include "cradle/tools/commands/commands.hpp"
-#include "cradle/tools/support/atomic_file.hpp"
-#include "cradle/tools/support/interrupt.hpp"
 
 namespace cradle::tools {
 
@@ -32,8 +30,7 @@ Exit run_trust(const TrustArguments& options) {
   if (options.both && particles_merge(scene))
     throw Error({"", 0, "--both"}, "particles that merge are computed in gaps", "", "leave out --both");
   const std::string output = options.output_or(scene.name + "-trust.h5");
-  const FileClaim claim(output);
-  check_overwrite(output, options.command(), &scene, options.force());
+  const FileClaim claim = options.claim(output, options.command(), &scene);
   Interrupt interrupt;
   note_signals(interrupt);
   const auto runs = trust(scene, {options.digits, options.both, options.show(), &interrupt, options.threads});

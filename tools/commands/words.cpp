@@ -5,8 +5,6 @@
 #include <cstdio>
 
 #include "cradle/tools/commands/commands.hpp"
-#include "cradle/tools/scene/checks.hpp"
-#include "cradle/tools/support/atomic_file.hpp"
 
 namespace cradle::tools {
 
@@ -48,8 +46,7 @@ Exit run_words(const WordsArguments& options) {
                                                      : options.word + ".h5";
   const words::Word word =
       options.word.empty() ? words::Word() : word_at({"", 0, "WORD"}, options.word, particles.gaps());
-  const FileClaim claim(output);
-  check_overwrite(output, command_of(options), nullptr, options.force());
+  const FileClaim claim = options.claim(output, command_of(options), nullptr);
   std::vector<WordReport> reports;
   std::size_t tried = 1;
   if (!word.empty()) {

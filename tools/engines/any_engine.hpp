@@ -12,11 +12,12 @@
 #include <vector>
 
 #include "cradle/core/base/state_stream.hpp"
+#include "cradle/core/engine/collapse.hpp"
 #include "cradle/core/engine/status.hpp"
 #include "cradle/core/observe/histograms.hpp"
 #include "cradle/core/parallel/workers.hpp"
+#include "cradle/core/queue/account.hpp"
 #include "cradle/tools/engines/number.hpp"
-#include "cradle/tools/engines/reported.hpp"
 #include "cradle/tools/engines/run_state.hpp"
 #include "cradle/tools/scene/scene.hpp"
 
@@ -38,6 +39,8 @@ struct ObservedCollision {
   ~ObservedCollision() = default;
 };
 using CollisionObserver = std::function<void(const ObservedCollision&)>;
+
+using ReportedCollapse = CollapseReport<Number, Number>;
 
 /// The guards of all particles (core/observe/guards.hpp).
 struct CheckedParticles {
@@ -72,7 +75,7 @@ class AnyEngine {
   virtual Number last_collision_time() const = 0;
   virtual ParticleIndex particles() const = 0;
   virtual ParticleIndex collided_particles() const = 0;
-  virtual ReportedAccount account() const = 0;
+  virtual Account<Number> account() const = 0;
   virtual ReportedCollapse collapse() const = 0;
   virtual long double epsilon() const = 0;  // of the type
 

@@ -1,20 +1,30 @@
 // The engine of a run in one scalar type: what code for all types requires of it (any_engine.hpp).
 #pragma once
 
-#include <array>
 #include <concepts>
 #include <limits>
-#include <memory>
-#include <optional>
-#include <string>
-#include <vector>
 
 #include "cradle/tools/engines/any_engine.hpp"
 #include "cradle/tools/engines/engine_of.hpp"
-#include "cradle/tools/engines/numbers_in.hpp"
 #include "cradle/tools/engines/run_state_in.hpp"
 
 namespace cradle::tools {
+
+template <Real T> Incident<Number> reported(const Incident<T>& i) {
+  return {number_of(i.time), i.particle, number_of(i.gap)};
+}
+
+template <Real T> struct CollisionIn final : ObservedCollision {
+  explicit CollisionIn(const Collision<T>& c) : of(c) {
+    left = c.left, right = c.right;
+    time = to_double(T(c.time.value())), interval = rounded(c.interval), closing_speed = rounded(c.closing_speed);
+  }
+  double time_low() const override { return to_double(difference(of.time, Pair<T>{T(time), T(0)})); }
+  Texts texts() const override {
+    return {to_text(T(of.time.value())), to_text(of.interval), to_text(of.closing_speed)};
+  }
+  const Collision<T>& of;
+};
 
 template <Real T> class AnyEngineIn final : public AnyEngine {
  public:
@@ -43,16 +53,15 @@ template <Real T> class AnyEngineIn final : public AnyEngine {
   Number last_collision_time() const override { return number_of(run_.engine->last_collision_time()); }
   ParticleIndex particles() const override { return run_.particles->count(); }
   ParticleIndex collided_particles() const override { return run_.engine->collided_particles(); }
-  ReportedAccount account() const override {
-    const Account<T>& account = run_.engine->account();
-    return {account.simultaneous,
-            account.order_lost,
-            account.unresolved,
-            reported(account.first_order_lost),
-            reported(account.first_unresolved),
-            account.uncertain > 0,
-            false,
-            reported(account.first_uncertain)};
+  Account<Number> account() const override {
+    const Account<T>& a = run_.engine->account();
+    return {a.simultaneous,
+            a.order_lost,
+            reported(a.first_order_lost),
+            a.unresolved,
+            reported(a.first_unresolved),
+            a.uncertain,
+            reported(a.first_uncertain)};
   }
   ReportedCollapse collapse() const override {
     const CollapseReport<T>& r = *run_.engine->collapse();

@@ -1,6 +1,5 @@
 // The inelastic law with any restitution as a function of the closing speed, for runs that a caller holds
 // (tools/run/scene_run.hpp): in double, in gaps, one collision after the other.
-#include <fmt/format.h>
 
 #include "cradle/tools/engines/engine_of.hpp"
 

@@ -14,12 +14,12 @@
 #include "cradle/core/engine/status.hpp"
 #include "cradle/core/observe/averages.hpp"
 #include "cradle/core/observe/dense_core.hpp"
+#include "cradle/core/observe/guards.hpp"
 #include "cradle/core/observe/profile.hpp"
 #include "cradle/core/observe/scenario.hpp"
 #include "cradle/core/observe/structure.hpp"
 #include "cradle/core/observe/zone.hpp"
 #include "cradle/tools/engines/number.hpp"
-#include "cradle/tools/engines/reported.hpp"
 
 namespace cradle::tools {
 
@@ -37,7 +37,7 @@ struct SampledState {  // core/observe/sample.hpp
   std::array<Wall, 2> walls;
 };
 
-struct SampledCloud {  // core/observe/clusters.hpp
+struct SampledCloud {  // core/observe/scenario.hpp
   struct Heaviest {
     Number mass, x, v;
     ParticleIndex index;
@@ -49,6 +49,14 @@ struct SampledCloud {  // core/observe/clusters.hpp
 /// Of tagged particles (core/observe/correlations.hpp).
 struct TaggedMotion {
   std::vector<double> displacement, velocity;
+};
+
+/// What a guard found (core/observe/guards.hpp).
+struct ReportedGuard {
+  Guard guard = Guard::order;
+  double found = 0, bound = 0;
+  ParticleIndex particle = -1;
+  Number time;
 };
 
 class RunState {

@@ -1,23 +1,49 @@
-// The state of a run at one time in one scalar type: what code for all types requires of it (run_state.hpp).
+// Numbers and the state of a run at one time in one scalar type: what code for all types requires of them (number.hpp,
+// run_state.hpp).
 #pragma once
 
 #include <algorithm>
-#include <array>
-#include <memory>
-#include <optional>
-#include <string>
-#include <utility>
-#include <vector>
+#include <concepts>
 
 #include "cradle/core/engine/sticky_gas.hpp"
-#include "cradle/core/observe/clusters.hpp"
 #include "cradle/core/observe/configuration_statistics.hpp"
 #include "cradle/core/observe/correlations.hpp"
+#include "cradle/core/observe/scenario.hpp"
 #include "cradle/tools/engines/engine_of.hpp"
-#include "cradle/tools/engines/numbers_in.hpp"
 #include "cradle/tools/engines/run_state.hpp"
 
 namespace cradle::tools {
+
+template <Real T> struct ExactIn final : ExactNumber {
+  explicit ExactIn(const T& x) : value(x) {}
+  std::string text() const override { return to_text(value); }
+  bool is_less(const ExactNumber& other) const override { return value < static_cast<const ExactIn&>(other).value; }
+  const T value;
+};
+
+template <Real T> double rounded(const T& x) { return x == x ? to_double(x) : none(); }
+
+template <Real T> Number number_of(const T& x) {
+  if constexpr (std::same_as<T, double>)
+    return {rounded(x), nullptr};
+  else
+    return {rounded(x), std::make_shared<ExactIn<T>>(x)};
+}
+template <Real T> std::optional<Number> number_of(const std::optional<T>& x) {
+  return x ? std::optional(number_of(*x)) : std::nullopt;
+}
+template <Real T> T exact_in(const Number& x) {
+  if constexpr (std::same_as<T, double>)
+    return x.value;
+  else
+    return static_cast<const ExactIn<T>&>(*x.exact).value;
+}
+
+template <Real T> Number rounded_once(std::string_view decimal) { return number_of(from_text<T>(decimal)); }
+
+template <Real T> ReportedGuard reported(const GuardReport<T>& r, const T& time) {
+  return {r.guard, to_double(r.found), to_double(r.bound), r.particle, number_of(time)};
+}
 
 /// What a state needs of its run.
 template <Real T> struct RunIn {

@@ -10,7 +10,8 @@
 #include <optional>
 #include <utility>
 
-#include "cradle/tools/support/shell.hpp"
+#include "cradle/tools/ensemble/replica_run.hpp"
+#include "cradle/tools/support/spelling.hpp"
 #include "cradle/tools/support/threads.hpp"
 
 namespace cradle::tools {
@@ -193,12 +194,6 @@ EnsembleOutcome run_study(const Study& study, const EnsembleOptions& options, co
   EnsembleOutcome end = lead(*store, options, file, processes, jobs);
   end.account = account;
   return end;
-}
-
-EnsembleOutcome run_ensemble(const Scene& scene, const EnsembleOptions& options, const std::string& file) {
-  Interrupt interrupt;
-  OneProcess alone(interrupt);
-  return run_study(ensemble_of(scene), options, file, alone);
 }
 
 }  // namespace cradle::tools

@@ -8,7 +8,6 @@
 
 #include "cradle/tools/ensemble/ensemble_store.hpp"
 #include "cradle/tools/ensemble/processes.hpp"
-#include "cradle/tools/ensemble/replica_run.hpp"
 #include "cradle/tools/support/progress.hpp"
 
 namespace cradle::tools {
@@ -33,8 +32,5 @@ struct EnsembleOutcome {
 /// others only a status.
 EnsembleOutcome run_study(const Study& study, const EnsembleOptions& options, const std::string& file,
                           Processes& processes);
-
-/// The study of one scene, by this process alone.
-EnsembleOutcome run_ensemble(const Scene& scene, const EnsembleOptions& options, const std::string& file);
 
 }  // namespace cradle::tools

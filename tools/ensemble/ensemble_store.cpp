@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "cradle/tools/ensemble/sweep.hpp"
 #include "cradle/tools/result/reader.hpp"
 #include "cradle/tools/result/writer.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
@@ -22,6 +21,11 @@ std::string spreads_text(const std::vector<SpreadRequest>& spreads) {
   for (const auto& [name, bins] : spreads)
     text += fmt::format("{}--spread {}={}:{}:{}", text.empty() ? "" : " ", name, bins.from, bins.to, bins.bins);
   return text.empty() ? "no --spread" : text;
+}
+
+std::string describe(const std::vector<ReplicaRange>& ranges) {
+  const std::string several = ranges.size() > 1 ? fmt::format("{} ranges, ", ranges.size()) : "";
+  return fmt::format("{}{} to {}", several, ranges.front().first, ranges.back().end() - 1);
 }
 
 }  // namespace
@@ -255,6 +259,29 @@ void EnsembleStore::drop_journals() {
   journal_.reset();
   ::unlink(part_.c_str());
   for (const std::string& path : rank_journals()) ::unlink(path.c_str());
+}
+
+std::unique_ptr<EnsembleStore> merged(const std::vector<std::string>& files) {
+  const std::string& first = files.front();
+  const Study study = study_in(
+      header_in(read_result(first), first, "give a file that `cradle ensemble` or `cradle sweep` wrote"), first,
+      {{first},
+       "cannot be merged here",
+       "another version's file, or a scene that was changed in it",
+       "use the program that wrote it"});
+  auto all = std::make_unique<EnsembleStore>(study, "");
+  for (const std::string& file : files) {
+    EnsembleStore one(study, file);
+    one.load_result("leave it out, since files of one scene with the same --spread are merged");
+    for (std::size_t k = 0; k < all->states().size(); ++k) {
+      EnsembleState &into = *all->states()[k], &from = *one.states()[k];
+      if (into.holds_any_of(from))
+        throw Error({file}, "has replicas that another of the files has too", describe(from.replicas().present()),
+                    "merge files of different replicas (--first)");
+      into.take(from);
+    }
+  }
+  return all;
 }
 
 }  // namespace cradle::tools

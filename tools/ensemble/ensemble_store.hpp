@@ -25,11 +25,6 @@
 
 namespace cradle::tools {
 
-/// What the journal of this result would begin with. `otherwise`: what to do where it holds no ensembles.
-JournalHeader header_in(const Result& result, const std::string& file, const char* otherwise);
-/// The study of a journal of replicas. Throws Error (Exit::io) naming the journal.
-Study study_in(const JournalHeader& journal, const std::string& path);
-
 class EnsembleStore {
  public:
   /// Reads no files yet. Throws Error if the scene cannot be run as an ensemble.

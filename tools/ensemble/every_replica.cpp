@@ -1,9 +1,13 @@
-#include "cradle/tools/ensemble/every_replica.hpp"
-
+// The snapshots and profiles of every replica, which an ensemble keeps if its scene requests it (output.every_replica).
+// A result file has one table for each time, "replicas/snapshots/0002": the rows of all replicas, one replica after the
+// other, as a run of it has them, behind a column with its number. Where a run has one row less (the gaps between n
+// particles), the last one of a replica is NaN. The last snapshot of a replica that ended before the end of the scene
+// has a time of its own: a table in which times differ has a second column with them.
 #include <algorithm>
 #include <limits>
 #include <set>
 
+#include "cradle/tools/ensemble/state.hpp"
 #include "cradle/tools/record/rows.hpp"
 #include "cradle/tools/result/growing_tables.hpp"
 

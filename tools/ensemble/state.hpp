@@ -13,9 +13,10 @@
 
 #include "cradle/core/base/large_pages.hpp"
 #include "cradle/core/ensemble/ensemble.hpp"
-#include "cradle/tools/ensemble/every_replica.hpp"
 #include "cradle/tools/ensemble/layout.hpp"
+#include "cradle/tools/result/result.hpp"
 #include "cradle/tools/store/journal.hpp"
+#include "cradle/tools/support/errors.hpp"
 
 namespace cradle::tools {
 
@@ -49,6 +50,18 @@ class ReplicaTable {
   LongArray<double> numbers_;
 };
 
+// ---- the snapshots and profiles of every replica (every_replica.cpp)
+
+/// The tables of a result file, with the rows of one replica each; and those of several replicas.
+using ReplicaTables = std::vector<Group>;
+using KeptReplicas = std::map<ReplicaIndex, ReplicaTables>;
+
+ReplicaTables kept_tables(ReplicaIndex replica, const Result& run);
+/// One table for each time, below `folder` ("" or "points/0003/").
+std::vector<Group> joined_tables(const KeptReplicas& kept, const std::string& folder);
+/// The inverse. Throws Error (Exit::io), naming `file`, for other columns than joined_tables makes.
+KeptReplicas separated_tables(const Result& result, const std::string& folder, const std::string& file);
+
 /// A part of an ensemble, which journals hold and ranks send: finished replicas with their statistics, or all of an
 /// ensemble in several records.
 struct EnsembleRecord {
@@ -65,6 +78,9 @@ struct EnsembleRecord {
     return std::tie(self.point, self.rows, self.messages, self.nodes, self.to_spread, self.spreads, self.kept);
   }
 };
+
+/// What to throw where a file or a record does not hold what an ensemble writes.
+Error damaged_ensemble(const Place& place, const std::string& found);
 
 /// Mean, standard error and extremes of a quantity. NaN if no replica has it. Counts the replicas that have it if not
 /// all do.

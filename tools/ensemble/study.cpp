@@ -5,7 +5,9 @@
 #include <algorithm>
 
 #include "cradle/core/initial/rows.hpp"
-#include "cradle/tools/support/checksum.hpp"
+#include "cradle/tools/setup/read_scene.hpp"
+#include "cradle/tools/store/run_journal.hpp"
+#include "cradle/tools/support/bytes.hpp"
 #include "cradle/tools/support/version.hpp"
 
 namespace cradle::tools {
@@ -22,6 +24,47 @@ bool is_random(const Scene& scene) {
 }
 
 }  // namespace
+
+JournalHeader header_in(const Result& result, const std::string& file, const char* otherwise) {
+  const auto& of_file = result.attributes;
+  if (std::ranges::find(of_file, "identity", &Attribute::first) == of_file.end())
+    throw Error({file}, "holds no ensemble", "a single run, or another command's result", otherwise);
+  JournalHeader header{attribute<std::string>(of_file, "kind", file),
+                       attribute<std::uint64_t>(of_file, "identity", file),
+                       attribute<std::string>(of_file, "scene", file), attribute<std::string>(of_file, "name", file)};
+  const std::string spread = "ensemble/spread/", below = "/ensemble";
+  for (const Group& group : result.groups) {
+    const auto& here = group.attributes;
+    if (group.name == "ensemble") {
+      header.points.emplace_back("", header.scene);
+    } else if (group.name.starts_with("points/") && group.name.ends_with(below)) {
+      header.points.emplace_back(group.name.substr(0, group.name.size() - below.size()),
+                                 attribute<std::string>(here, "scene", file));
+    } else if (group.name.starts_with(spread) && !group.columns.empty()) {
+      header.spreads.push_back({group.name.substr(spread.size()),
+                                {attribute<double>(here, "from", file), attribute<double>(here, "to", file),
+                                 attribute<std::uint64_t>(here, "bins", file)}});
+      if (const SpreadRequest& found = header.spreads.back(); !found.bins_are_possible())
+        throw Error({file, 0, group.name}, "no bins", fmt::format("{}", found.bins.bins), "make the file anew",
+                    Exit::io);
+    }
+  }
+  return header;
+}
+
+Study study_in(const JournalHeader& header, const std::string& path, const Error& of_other_scenes) {
+  Study study{header.kind, scene_of(header, path), {}, header.spreads};
+  for (const auto& [group, scene] : header.points) {
+    study.points.push_back({group, parse_scene(scene, path)});
+    study.points.back().scene.name = header.name;
+  }
+  if (study.identity() != header.identity) throw of_other_scenes;
+  // The identity is that of the points, not of the scene that is varied.
+  if (const std::size_t n = study.points.size(); study.kind == "sweep" && sweep_points(study.scene.sweep).size() != n)
+    throw Error({path}, "a sweep with other points than its scene", fmt::format("{} points", n),
+                "make it anew, or remove it", Exit::io);
+  return study;
+}
 
 std::string same_replicas_warning(const Study& study, std::uint64_t replicas) {
   if (replicas < 2) return "";

@@ -1,4 +1,4 @@
-#include "cradle/tools/ensemble/sweep.hpp"
+#include "cradle/tools/ensemble/study.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -4,11 +4,8 @@
 
 #include <chrono>
 #include <condition_variable>
-#include <cstdint>
-#include <functional>
 #include <future>
 #include <mutex>
-#include <optional>
 
 #include "cradle/tools/ensemble/processes.hpp"
 
@@ -16,44 +13,36 @@ namespace cradle::tools {
 
 class WorkQueue {
  public:
-  /// Begins work(next) at once. `put` adds jobs until it is closed. An interrupt ends the work early.
+  /// Begins work(next) at once. An interrupt ends the work early.
   WorkQueue(const std::function<void(const NextJob&)>& work, const Interrupt& interrupt)
       : interrupt_(interrupt), work_(std::async(std::launch::async, [this, work] {
           work([this](std::uint64_t most) { return next(most); });
         })) {}
-  ~WorkQueue() { close(); }  // and waits for the work
+  ~WorkQueue() { put({}); }  // and waits for the work
   WorkQueue(const WorkQueue&) = delete;
   WorkQueue& operator=(const WorkQueue&) = delete;
 
-  void put(const JobRange& piece) {
+  /// Adds jobs; without any, the queue is closed: no more will be put.
+  void put(const std::optional<JobRange>& piece) {
     const std::scoped_lock lock(mutex_);
-    jobs_.put(piece);
+    if (piece)
+      jobs_.put(*piece);
+    else
+      closed_ = true;
     changed_.notify_all();
-  }
-  /// No more jobs will be put.
-  void close() {
-    const std::scoped_lock lock(mutex_);
-    closed_ = true;
-    changed_.notify_all();
-  }
-  bool empty() const {
-    const std::scoped_lock lock(mutex_);
-    return jobs_.left() == 0;
-  }
-  /// The number of replicas that threads have taken.
-  std::uint64_t taken() const {
-    const std::scoped_lock lock(mutex_);
-    return taken_;
   }
 
-  /// True when the work has returned; throws what the work threw. Waits a moment first or, if requested, until the last
-  /// job is taken.
-  bool idle(bool or_empty) {
+  struct State {
+    bool done, empty;     // the work has returned; all jobs are taken
+    std::uint64_t taken;  // replicas that threads have taken
+  };
+  /// Waits a moment first or, if requested, until the last job is taken. Throws what the work threw.
+  State state(bool or_empty) {
     std::unique_lock lock(mutex_);
     changed_.wait_for(lock, std::chrono::milliseconds(1), [&] { return or_empty && jobs_.left() == 0; });
-    if (work_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return false;
-    work_.get();
-    return true;
+    const bool done = work_.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+    if (done) work_.get();
+    return {done, jobs_.left() == 0, taken_};
   }
 
  private:
@@ -72,7 +61,7 @@ class WorkQueue {
   }
 
   const Interrupt& interrupt_;
-  mutable std::mutex mutex_;
+  std::mutex mutex_;
   std::condition_variable changed_;
   JobQueue jobs_{{}};
   bool closed_ = false;

@@ -7,7 +7,7 @@
 #include <span>
 
 #include "cradle/tools/proof/certify.hpp"
-#include "cradle/tools/support/checksum.hpp"
+#include "cradle/tools/support/bytes.hpp"
 #include "cradle/tools/support/table.hpp"
 
 namespace cradle::tools {

@@ -6,14 +6,9 @@
 #include <cmath>
 #include <future>
 #include <limits>
-#include <memory>
-#include <optional>
 #include <tuple>
 #include <utility>
-#include <vector>
 
-#include "cradle/core/certify/checker.hpp"
-#include "cradle/precision/ball_text.hpp"
 #include "cradle/tools/proof/agreement.hpp"
 #include "cradle/tools/proof/certain_law.hpp"
 #include "cradle/tools/proof/certificate.hpp"

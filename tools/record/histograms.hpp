@@ -3,7 +3,6 @@
 
 #include <array>
 #include <limits>
-#include <string_view>
 
 #include "cradle/core/observe/histograms.hpp"
 #include "cradle/tools/record/measurement.hpp"

@@ -8,9 +8,7 @@ namespace cradle::tools {
 
 namespace {
 
-template <class... Each> constexpr auto rows_of(MeasurementList<Each...>) { return std::array{&Each::row...}; }
-
-constexpr std::array rows = rows_of(AllMeasurements());
+constexpr auto& rows = Measurements::rows;
 
 // Logarithmic spacing starts at this share of the run: six points per decade would need 36 for it.
 constexpr double first_log_share = 1e-6;

@@ -1,4 +1,4 @@
-// The list of measurements, and those that a run holds. To add one, write its file and add it here.
+// Those measurements that a run holds, and, at the end, the list of all. To add one, write its file and add it here.
 #pragma once
 
 #include <array>
@@ -20,16 +20,11 @@
 
 namespace cradle::tools {
 
-template <class... Each> struct MeasurementList {};
-using AllMeasurements =
-    MeasurementList<SeriesMeasurement, SnapshotMeasurement, ProfileMeasurement, MassMeasurement, ZoneMeasurement,
-                    AverageMeasurement, HistogramMeasurement, CorrelationMeasurement, StructureMeasurement,
-                    PairMeasurement, ScenarioMeasurement, EventMeasurement, WordMeasurement>;
-
 /// Those that a scene wants.
-template <class List> class MeasurementsOf;
-template <class... Each> class MeasurementsOf<MeasurementList<Each...>> {
+template <class... Each> class MeasurementsOf {
  public:
+  static constexpr std::array rows{&Each::row...};
+
   MeasurementsOf(const Scene& scene, AnyEngine& engine, const Schedule& plan, bool exact)
       : scene_(scene), engine_(engine), plan_(plan), exact_(exact) {
     with_rows(all_, [&]<class M>(std::optional<M>& measurement, std::size_t row) {
@@ -141,6 +136,11 @@ template <class... Each> class MeasurementsOf<MeasurementList<Each...>> {
   std::tuple<std::optional<Each>...> all_;
   std::array<Due, sizeof...(Each)> due_ = {};  // at the time that the run has come to
 };
-using Measurements = MeasurementsOf<AllMeasurements>;
+
+/// All of them, in the order of their tables.
+using Measurements =
+    MeasurementsOf<SeriesMeasurement, SnapshotMeasurement, ProfileMeasurement, MassMeasurement, ZoneMeasurement,
+                   AverageMeasurement, HistogramMeasurement, CorrelationMeasurement, StructureMeasurement,
+                   PairMeasurement, ScenarioMeasurement, EventMeasurement, WordMeasurement>;
 
 }  // namespace cradle::tools

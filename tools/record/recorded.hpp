@@ -2,8 +2,11 @@
 // /exact.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <iterator>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <variant>
@@ -15,7 +18,13 @@
 namespace cradle::tools {
 
 /// Puts the numbers into the columns of a table, in order. Throws std::logic_error if their number differs.
-Group filled(Group table, std::vector<Numbers> columns);
+inline Group filled(Group table, std::vector<Numbers> columns) {
+  if (columns.size() != table.columns.size())
+    throw std::logic_error(
+        fmt::format("a table /{} of {} columns, and numbers for {}", table.name, table.columns.size(), columns.size()));
+  for (std::size_t k = 0; k < columns.size(); ++k) table.columns[k].values = std::move(columns[k]);
+  return table;
+}
 template <class... Values> Group filled(Group table, Values&&... values) {
   std::vector<Numbers> columns;
   (columns.push_back(Numbers(std::forward<Values>(values))), ...);
@@ -72,7 +81,23 @@ class TableSink {
   /// Appends rows to the table of that name; the columns are those of the table.
   virtual void add(Group&& rows) = 0;
   /// And, if the columns have texts, to that of the decimals.
-  void add(Recorded&& rows);
+  void add(Recorded&& recorded) {
+    Group exact{std::string(exact_folder) + recorded.table.name, {}, {}};
+    std::vector<Numbers> doubles;
+    for (std::size_t k = 0; k < recorded.columns.size(); ++k) {
+      auto* numbers = std::get_if<NumberColumn>(&recorded.columns[k]);
+      if (numbers != nullptr && numbers->texts)
+        exact.columns.emplace_back(recorded.table.columns.at(k)).values = std::move(*numbers->texts);
+      doubles.push_back(numbers != nullptr ? Numbers(std::move(numbers->values))
+                                           : std::get<Numbers>(std::move(recorded.columns[k])));
+    }
+    for (const auto& [name, x] : recorded.attributes) {
+      if (!exact.columns.empty()) exact.attributes.emplace_back(name, x.text());
+      recorded.table.attributes.emplace_back(name, x.value);
+    }
+    if (!exact.columns.empty()) add(std::move(exact));
+    add(filled(std::move(recorded.table), std::move(doubles)));
+  }
   /// Statistics take the rows of the series as they are, and empty them; others get a table of them (false).
   virtual bool take_series(std::vector<NumberColumn>&) { return false; }
 

@@ -19,28 +19,11 @@ std::size_t Times::first_from(const Number& time) const {
   return static_cast<std::size_t>(std::lower_bound(exact_.begin() + first, exact_.begin() + last, time) -
                                   exact_.begin());
 }
-std::size_t Times::first_after(const Number& time) const {
-  const std::size_t k = first_from(time);
-  return k < size() && !(time < (*this)[k]) ? k + 1 : k;
-}
-
-bool Times::hold(const Number& time) const {
-  if (empty()) return false;
-  const std::size_t k = first_from(time);
-  return k < size() && !(time < (*this)[k]);
-}
 
 std::vector<double> Times::rounded() const {
   std::vector<double> all;
   for (std::size_t k = 0; k < size(); ++k) all.push_back(from_text<double>(decimals_[k]));
   return all;
-}
-
-std::optional<RunTime> Times::find(const Number& time) const {
-  if (empty()) return {};
-  const std::size_t k = first_from(time);
-  if (k == size() || time < (*this)[k]) return {};
-  return RunTime(time, decimals_[k]);
 }
 
 Schedule::Schedule(const Scene& scene) {

@@ -28,16 +28,24 @@ class Times {
   /// The index of the first time that is not before `time` (first_from), or of the first one that is after it
   /// (first_after).
   std::size_t first_from(const Number& time) const;
-  std::size_t first_after(const Number& time) const;
-  bool hold(const Number& time) const;
+  std::size_t first_after(const Number& time) const {
+    const std::size_t k = first_from(time);
+    return k + (is_at(k, time) ? 1 : 0);
+  }
+  bool hold(const Number& time) const { return is_at(first_from(time), time); }
   std::vector<double> rounded() const;  // the decimals, as results store them
-  std::optional<RunTime> find(const Number& time) const;
+  std::optional<RunTime> find(const Number& time) const {
+    const std::size_t k = first_from(time);
+    return is_at(k, time) ? std::optional(RunTime(time, decimals_[k])) : std::nullopt;
+  }
   /// The decimal of `time`, which must be one of these times.
   std::string_view decimal(const Number& time) const { return decimals_[first_from(time)]; }
 
  private:
   static std::string_view text_of(std::string_view decimal) { return decimal; }
   static std::string_view text_of(const Decimal& decimal) { return decimal.text; }
+
+  bool is_at(std::size_t first, const Number& time) const { return first < size() && !(time < (*this)[first]); }
 
   std::vector<double> values_;
   std::vector<Number> exact_;  // none in double

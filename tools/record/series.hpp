@@ -4,8 +4,6 @@
 
 #include <cstdint>
 #include <limits>
-#include <utility>
-#include <vector>
 
 #include "cradle/tools/record/measurement.hpp"
 #include "cradle/tools/scene/scene.hpp"

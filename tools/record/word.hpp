@@ -3,8 +3,6 @@
 #pragma once
 
 #include <optional>
-#include <string>
-#include <vector>
 
 #include "cradle/core/observe/collision_word.hpp"
 #include "cradle/core/words/followed.hpp"

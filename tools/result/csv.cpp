@@ -14,17 +14,15 @@ namespace cradle::tools {
 
 namespace {
 
-// Makes text of several lines one comment.
-std::string comment(const Attribute& attribute) {
-  std::string value = std::visit([](const auto& v) { return fmt::format("{}", v); }, attribute.second);
-  for (std::size_t at = value.find('\n'); at != value.npos; at = value.find('\n', at + 1)) value.insert(at + 1, "#   ");
-  return fmt::format("# {} = {}\n", attribute.first, value);
-}
-
+// A comment for each attribute, also for text of several lines; the scene has a file.
 std::string comments(const std::vector<Attribute>& attributes) {
   std::string text;
-  for (const Attribute& attribute : attributes)
-    if (attribute.first != "scene") text += comment(attribute);
+  for (const auto& [name, value] : attributes) {
+    if (name == "scene") continue;
+    std::string one = std::visit([](const auto& v) { return fmt::format("{}", v); }, value);
+    for (std::size_t at = one.find('\n'); at != one.npos; at = one.find('\n', at + 1)) one.insert(at + 1, "#   ");
+    text += fmt::format("# {} = {}\n", name, one);
+  }
   return text;
 }
 

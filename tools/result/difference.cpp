@@ -16,9 +16,7 @@ namespace {
 bool same(double a, double b) {
   return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b) || (std::isnan(a) && std::isnan(b));
 }
-bool same(std::uint64_t a, std::uint64_t b) { return a == b; }
-
-bool same(const std::string& a, const std::string& b) { return a == b; }
+template <class Value> bool same(const Value& a, const Value& b) { return a == b; }
 
 // Numbers further apart are not those of one computation: their distance in ULPs says nothing.
 constexpr std::uint64_t most_ulps = 1'000'000;

@@ -1,4 +1,4 @@
-// Reads result files. The seal reveals damaged files (seal.hpp), and nothing in a file is trusted (hdf5_values.hpp).
+// Reads result files. The seal reveals damaged files (seal.hpp), and nothing in a file is trusted (reader.cpp).
 #pragma once
 
 #include <string>

@@ -2,6 +2,7 @@
 // (writer.hpp, csv.hpp) or reads them (reader.hpp) uses this form. Its layout is that of result files.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -11,6 +12,9 @@
 #include <utility>
 #include <variant>
 #include <vector>
+
+#include "cradle/core/base/state.hpp"
+#include "cradle/tools/support/errors.hpp"
 
 namespace cradle::tools {
 
@@ -34,7 +38,10 @@ struct Column {
   }
   /// For complete columns, not those of an outline.
   static auto state(auto& self) { return std::tie(self.name, self.unit, self.description, self.values, self.width); }
-  void loaded() const;
+  void loaded() const {
+    const std::size_t numbers = std::visit([](const auto& v) { return v.size(); }, values);
+    require_state(width > 0 && numbers % width == 0, "rows that are not whole");
+  }
 };
 
 /// A number for each row: what `of`, a function or a member, gives for it.
@@ -56,7 +63,17 @@ template <class T> const T* find_attribute(const std::vector<Attribute>& attribu
 }
 /// The same. Throws Error (Exit::io), naming `where`, if there is none.
 template <class T>
-const T& attribute(const std::vector<Attribute>& attributes, std::string_view name, std::string_view where);
+const T& attribute(const std::vector<Attribute>& attributes, std::string_view name, std::string_view where) {
+  if (const T* found = find_attribute<T>(attributes, name)) return *found;
+  throw Error({std::string(where), 0, ""}, "not a result of this program", "no attribute " + std::string(name),
+              "give a file that cradle wrote", Exit::io);
+}
+
+/// The first of this name; null if there is none.
+template <class Named> const Named* find_named(const std::vector<Named>& all, std::string_view name) {
+  const auto at = std::ranges::find(all, name, &Named::name);
+  return at == all.end() ? nullptr : &*at;
+}
 
 /// "series", "snapshots/0000", ...; a group may hold attributes only.
 struct Group {
@@ -64,7 +81,7 @@ struct Group {
   std::vector<Attribute> attributes;
   std::vector<Column> columns;
 
-  const Column* find(std::string_view column) const;
+  const Column* find(std::string_view column) const { return find_named(columns, column); }
   static auto state(auto& self) { return std::tie(self.name, self.attributes, self.columns); }
 };
 
@@ -72,7 +89,7 @@ struct Result {
   std::vector<Attribute> attributes;  // of the file
   std::vector<Group> groups;
 
-  const Group* find(std::string_view name) const;
+  const Group* find(std::string_view name) const { return find_named(groups, name); }
 };
 
 /// The folder of decimals: numbers of types wider than double.

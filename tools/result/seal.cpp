@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "cradle/tools/support/bytes.hpp"
-#include "cradle/tools/support/checksum.hpp"
 #include "cradle/tools/support/errors.hpp"
 
 namespace cradle::tools {

@@ -1,5 +1,6 @@
-#include "cradle/tools/run/clusters.hpp"
-
+// The paper's model of the two heaviest clusters, equation (16), integrated in double. It has no particles. Its result
+// has the layout of any run (series, series/heaviest), and also the force (14) over twice the width of the zone and a
+// table of the meetings of the clusters.
 #include <boost/numeric/odeint/stepper/generation.hpp>
 #include <boost/numeric/odeint/stepper/runge_kutta_dopri5.hpp>
 
@@ -9,7 +10,9 @@
 #include <vector>
 
 #include "cradle/core/theory/wet_clusters.hpp"
+#include "cradle/core/theory/wet_zone.hpp"
 #include "cradle/tools/record/series.hpp"
+#include "cradle/tools/run/run.hpp"
 
 namespace cradle::tools {
 

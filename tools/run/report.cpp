@@ -8,7 +8,6 @@
 
 #include "cradle/precision/bin_float.hpp"
 #include "cradle/tools/record/rows.hpp"
-#include "cradle/tools/scene/decimal_parts.hpp"
 #include "cradle/tools/support/table.hpp"
 
 namespace cradle::tools {
@@ -123,26 +122,27 @@ std::string apart(const Scene& scene) {
 }
 
 // The text for standard error; empty if everything was resolved.
-std::string account_warning(const ReportedAccount& account, const Scene& scene) {
+std::string account_warning(const Account<Number>& account, bool uncertain_end, const Scene& scene) {
   const Run& run = scene.run;
   std::string text;
   if (account.order_lost > 0)
     text += fmt::format(
         "order of collisions lost ({} times, first at t = {} {}, gap {:.3e}): use more digits (run.precision){}\n",
         account.order_lost, account.first_order_lost.time.text(), place(account.first_order_lost.particle),
-        account.first_order_lost.gap, run.coordinates == Coordinates::absolute ? " or run.coordinates = \"gaps\"" : "");
+        account.first_order_lost.gap.value,
+        run.coordinates == Coordinates::absolute ? " or run.coordinates = \"gaps\"" : "");
   if (account.unresolved > 0)
     text += fmt::format(
         "gaps below 1e6 units in the last place of x ({} collisions, first at t = {} {}, gap {:.3e}): results that "
         "depend on such gaps cannot be trusted; use run.coordinates = \"gaps\" or more digits\n",
         account.unresolved, account.first_unresolved.time.text(), place(account.first_unresolved.particle),
-        account.first_unresolved.gap);
+        account.first_unresolved.gap.value);
   if (account.simultaneous > 0)
     text += fmt::format(
         "in {} collisions three particles met at one time, within rounding: then the numbers do not say which pair "
         "collides first, and the left one is taken; {} (particles that rest on one another always meet so)\n",
         account.simultaneous, apart(scene));
-  if (const double grown = account.first_uncertain.gap; account.uncertain)
+  if (const double grown = account.first_uncertain.gap.value; account.uncertain > 0)
     text += fmt::format(
         "collisions are certain up to t = {} only: there rounding, which has grown to {} {}, may have decided "
         "which one was next ({:.0f} digits of a length of 1 are left in {}); the collisions after it are those of a "
@@ -152,7 +152,7 @@ std::string account_warning(const ReportedAccount& account, const Scene& scene) 
         precision_name(run),
         measures_averages(scene) ? "Averages over many collisions are as good from it; to follow one motion use"
                                  : "Use");
-  if (account.uncertain_end)
+  if (uncertain_end)
     text += fmt::format("rounding may decide which collisions come before the end (t = {}, {}): use more "
                         "digits (run.precision), or another run.until\n",
                         account.first_uncertain.time.text(), place(account.first_uncertain.particle));
@@ -194,7 +194,7 @@ double energy_digits(const Scene& scene, const AnyEngine& engine, const RunState
   const bool heated = scene.walls.left.temperature || scene.walls.right.temperature;
   grown = !off && (particles_merge(scene) || heated || scene.walls.shaken() || scene.gravity.acts() ||
                    unequal_masses(scene) || scene.run.coordinates == Coordinates::absolute);
-  if (engine.account().uncertain && at_start != at_end) return 0;
+  if (engine.account().uncertain > 0 && at_start != at_end) return 0;
   const auto active = static_cast<double>(std::max<ParticleIndex>(engine.collided_particles(), 1));
   double error = 2 * std::sqrt(1 + static_cast<double>(engine.counts().collisions) / active);
   const bool velocities = scene.run.coordinates == Coordinates::absolute || particles_merge(scene);
@@ -230,7 +230,7 @@ static_assert(rows_in_order(guard_rows));
 
 }  // namespace
 
-std::string guard_message(const ReportedGuard& g, const ReportedAccount& account, const Run& run) {
+std::string guard_message(const ReportedGuard& g, const Account<Number>& account, const Run& run) {
   const std::string broken =
       fmt::format("stopped by the guard of {} (found {:.6g}, bound {:.6g}, at t = {}{}): ",
                   guard_rows[static_cast<std::size_t>(g.guard)].broken, g.found, g.bound, g.time.text(),
@@ -266,17 +266,16 @@ RunOutcome outcome_of(const Scene& scene, const AnyEngine& engine, const RunStat
 
 RunEnding::RunEnding(const Scene& scene, const AnyEngine& engine, const RunState& now, Status status)
     : outcome(outcome_of(scene, engine, now, status)) {
-  ReportedAccount account = engine.account();
+  Account<Number> account = engine.account();
   const auto found = status == Status::collapsed ? std::optional(engine.collapse()) : std::nullopt;
   outcome.energy_digits = energy_digits(scene, engine, now, outcome.may_have_grown);
-  if (const auto particle = now.uncertain(); particle && !account.uncertain && status == Status::reached) {
-    account.uncertain_end = true;
-    account.first_uncertain = {now.time.meant, 0, *particle};
-  }
+  const auto particle = now.uncertain();
+  const bool uncertain_end = particle && account.uncertain == 0 && status == Status::reached;
+  if (uncertain_end) account.first_uncertain = {now.time.meant, *particle};
   const bool rests = status == Status::exhausted && engine.particles() == 1 && !collapsing_floor(scene).empty() &&
                      scene.run.coordinates == Coordinates::gaps;
-  if (rests) account.uncertain = false;  // no digits decide which collision is next
-  outcome.warning = account_warning(account, scene);
+  if (rests) account.uncertain = 0;  // no digits decide which collision is next
+  outcome.warning = account_warning(account, uncertain_end, scene);
   if (status == Status::exhausted)
     outcome.warning += exhausted_warning(now.time.exact, outcome.collisions, scene, rests);
   attributes = {{"simultaneous_collisions", account.simultaneous},
@@ -284,9 +283,9 @@ RunEnding::RunEnding(const Scene& scene, const AnyEngine& engine, const RunState
                 {"unresolved_gaps", account.unresolved},
                 {"energy_digits", outcome.energy_digits},
                 {"ledger_error", now.ledger_error()}};
-  if (account.uncertain || account.uncertain_end)
-    attributes.emplace_back("uncertain_from", account.uncertain_end ? before_last_collision(scene, engine)
-                                                                    : account.first_uncertain.time.value);
+  if (account.uncertain > 0 || uncertain_end)
+    attributes.emplace_back("uncertain_from",
+                            uncertain_end ? before_last_collision(scene, engine) : account.first_uncertain.time.value);
   if (!found) return;
   const std::string floor = collapsing_floor(scene);
   const bool on_floor =

@@ -22,6 +22,6 @@ struct RunEnding {
 };
 
 /// The message of a guard that stops a run. What positions may not have resolved is not the machine's fault.
-std::string guard_message(const ReportedGuard& guard, const ReportedAccount& account, const Run& run);
+std::string guard_message(const ReportedGuard& guard, const Account<Number>& account, const Run& run);
 
 }  // namespace cradle::tools

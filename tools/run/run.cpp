@@ -1,10 +1,8 @@
 #include "cradle/tools/run/run.hpp"
 
 #include "cradle/tools/record/rows.hpp"
-#include "cradle/tools/run/clusters.hpp"
 #include "cradle/tools/run/scene_run.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
-#include "cradle/tools/support/notify.hpp"
 #include "cradle/tools/support/version.hpp"
 
 namespace cradle::tools {

@@ -63,5 +63,7 @@ Scene without_tables(Scene scene);
 RunOutcome run_scene(const Scene& scene, const RunOptions& options, Sink& sink);
 /// The same into memory: the outcome has the result.
 RunOutcome run_scene(const Scene& scene, const RunOptions& options);
+/// The same of a scene with initial.type = "clusters" (clusters.cpp). Throws Error if collisions are requested (trust).
+RunOutcome run_clusters(const Scene& scene, const RunOptions& options, Sink& sink);
 
 }  // namespace cradle::tools

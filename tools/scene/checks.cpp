@@ -4,12 +4,12 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <compare>
 #include <limits>
 #include <utility>
 
 #include "cradle/core/observe/averages.hpp"
 #include "cradle/tools/scene/checked.hpp"
-#include "cradle/tools/scene/particle_order.hpp"
 
 namespace cradle::tools {
 namespace {
@@ -137,12 +137,12 @@ void samples_can_be_kept(const Checked& of) {
   constexpr double most = 1e7;  // as for points in the table of keys
   const Series& series = of.scene.output.series;
   const bin_float start = precise(of.scene.run.start), span = precise(of.scene.run.until) - start;
-  const auto one_scale = [&](const char* key, const Decimal& a, const Decimal& b) {
+  const auto one_scale = [&](std::string_view key, const Decimal& a, const Decimal& b) {
     for (const Decimal& end : {of.scene.run.start, of.scene.run.until})
       if (!of_one_scale(end, a, b))
         of.refuse(key, "times of thousands of digits", b.text, "give it and the ends of the run fewer digits");
   };
-  const auto check = [&](const char* key, const Decimal& given, const bin_float& step) {
+  const auto check = [&](std::string_view key, const Decimal& given, const bin_float& step) {
     one_scale(key, of.scene.run.start, given);
     const auto samples = static_cast<double>(bin_float(span / step));
     if (!(samples <= most))
@@ -150,15 +150,10 @@ void samples_can_be_kept(const Checked& of) {
                 fmt::format("{}, which makes {:.3g} of them until run.until", given.text, samples),
                 fmt::format("give a longer time, {:.0g} samples at most", most));
   };
-  for (const auto& [key, every] :
-       {std::pair("output.averages.every", of.scene.output.averages.every),
-        std::pair("output.counting.every", of.scene.output.counting.every),
-        std::pair("output.correlations.every", of.scene.output.correlations.every),
-        std::pair("output.structure.every", of.scene.output.structure.every),
-        std::pair("output.pair_distribution.every", of.scene.output.pair_distribution.every)})
-    if (every) check(key, *every, precise(*every));
+  for (const Field& field : scene_fields())
+    if (field.key.starts_with("output.") && field.key.ends_with(".every"))
+      for (const Decimal& every : numbers_of(field, of.scene)) check(field.key, every, precise(every));
   if (of.scene.output.zone.from) one_scale("output.zone.from", of.scene.run.start, *of.scene.output.zone.from);
-  if (series.every) return check("output.series.every", *series.every, precise(*series.every));
   if (series.points) one_scale("run.until", of.scene.run.start, of.scene.run.until);
   if (!series.over) return;
   const bin_float over = precise(*series.over) - start, points(static_cast<std::int64_t>(*series.points - 1));
@@ -179,22 +174,36 @@ void check_scene(const Scene& scene, const Entries& entries, const std::string& 
     check(of);
 }
 
-words::Word word_at(const Place& place, const std::string& letters, std::size_t gaps) {
-  try {
-    return words::read_word(letters, gaps);
-  } catch (const words::BadWord& bad) {
-    throw Error(place, bad.what(), bad.found, bad.advice);
-  }
+void NumberRange::check(std::string_view literal, const Place& place) const {
+  const auto size = literal.substr(literal.starts_with('-') ? 1 : 0);
+  if (type_.largest.empty() || std::is_lteq(compare_decimals(size, type_.largest))) return;
+  throw Error(place, "too large for the precision", fmt::format("{} with \"{}\"", literal, type_.name),
+              "give a smaller number or another run.precision");
 }
 
-void check_word(const Place& place, const Scene& scene) {
-  if (particles_merge(scene) || scene.initial.on_ring())
-    throw Error(place, "letters are of particles on a line that bounce",
-                scene.initial.on_ring() ? "a ring" : "particles that merge", "remove it, or give output.events");
-  const std::size_t gaps = scene.gaps(), most = 26;
-  if (gaps < 2 || gaps > most)
-    throw Error(place, "not a few particles", fmt::format("{} gaps", gaps), fmt::format("give 2 to {}", most));
-  if (*scene.output.word != any_word) word_at(place, *scene.output.word, gaps);
+void NumberRange::check_positive(std::string_view literal, const Place& place) const {
+  if (type_.least.empty() || std::is_gteq(compare_decimals(literal, type_.least))) return;
+  throw Error(place, "too small for the precision", fmt::format("{} with \"{}\"", literal, type_.name),
+              "give a larger number or another run.precision");
+}
+
+void check_neighbours(const DecimalColumn& x, const DecimalColumn& v, std::size_t right, const NumberRange& range,
+                      const Place& place) {
+  const std::size_t left = right - 1;
+  const auto order = compare_decimals(x[right], x[left]);
+  if (std::is_gt(order)) return range.check_positive(difference(x[right], x[left]), place);
+  const auto places = fmt::format("{} after {}", x[right], x[left]);
+  if (std::is_lt(order)) throw Error(place, "not increasing", places, "give the particles in order of increasing x");
+  if (std::is_gt(compare_decimals(v[left], v[right])))
+    throw Error(place, "particles that touch and approach", places,
+                "give them the velocities that they have after this collision, or a distance: initial.gap, or a column "
+                "gap, with 1e-300 there");
+}
+
+void check_order(const DecimalColumn& x, const DecimalColumn& v, const Run& run,
+                 const std::function<Place(std::size_t)>& before) {
+  const NumberRange range(run);
+  for (std::size_t right = 1; right < x.size(); ++right) check_neighbours(x, v, right, range, before(right));
 }
 
 }  // namespace cradle::tools

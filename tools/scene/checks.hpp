@@ -3,7 +3,10 @@
 // out of order, two settings for the same thing, and numbers beyond the range of the working precision.
 #pragma once
 
-#include "cradle/core/words/word.hpp"
+#include <cstddef>
+#include <functional>
+#include <string_view>
+
 #include "cradle/tools/scene/scene.hpp"
 #include "cradle/tools/scene/source.hpp"
 
@@ -24,10 +27,29 @@ void refuse_inapplicable_keys(const Entries& entries, const Scene& scene, std::s
 /// that are missing.
 void check_scene(const Scene& scene, const Entries& entries, const std::string& scene_file);
 
-/// The word of these letters, which stand at this place. Throws Error.
-words::Word word_at(const Place& place, const std::string& letters, std::size_t gaps);
+/// The numbers that the working precision of a run can hold. A larger number would become infinite and spoil the run; a
+/// smaller one becomes 0, which is not allowed for masses.
+class NumberRange {
+ public:
+  explicit NumberRange(const Run& run) : type_(scalar_row(run.precision)) {}
 
-/// Checks output.word, which is at this place, once the particles of a list are read.
-void check_word(const Place& place, const Scene& scene);
+  /// Throws Error at `place` if a canonical decimal is too large.
+  void check(std::string_view literal, const Place& place) const;
+  /// The same if a positive one is too small.
+  void check_positive(std::string_view literal, const Place& place) const;
+
+ private:
+  const ScalarRow& type_;
+};
+
+/// Throws Error unless particle `right` of a list and the one before it are in order, and apart in the working
+/// precision if they are not at one place. Those at one place must not approach: whether one of them collides before
+/// with a third one would be open.
+void check_neighbours(const DecimalColumn& x, const DecimalColumn& v, std::size_t right, const NumberRange& range,
+                      const Place& place);
+
+/// The same of all neighbours; `before` is the place of what is said of a particle and the one before it.
+void check_order(const DecimalColumn& x, const DecimalColumn& v, const Run& run,
+                 const std::function<Place(std::size_t)>& before);
 
 }  // namespace cradle::tools

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "cradle/core/theory/wet_zone.hpp"
-#include "cradle/tools/scene/particle_order.hpp"
+#include "cradle/tools/scene/checks.hpp"
 
 namespace cradle::tools {
 namespace {
@@ -97,7 +97,7 @@ void one_list_of_particles(const Checked& of) {
   same_length(of, "initial.v", initial.v.size());
   if (of.entries.contains("initial.m")) same_length(of, "initial.m", initial.m.size());
   const bool gaps = of.entries.contains("initial.gap");
-  check_order({initial.x, initial.v, initial.m}, of.scene.run, [&](std::size_t i) {
+  check_order(initial.x, initial.v, of.scene.run, [&](std::size_t i) {
     return gaps ? of.item_place("initial.gap", i - 1) : of.item_place("initial.x", i);
   });
 }

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <initializer_list>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
@@ -22,6 +23,25 @@ std::optional<std::string> canonical_decimal(std::string_view text);
 
 /// The same for CSV and the command line, where TOML's rules do not apply: no underscores.
 std::optional<std::string> plain_decimal(std::string_view text);
+
+/// A decimal literal in parts.
+struct DecimalParts {
+  bool negative = false;
+  std::string digits;
+  std::int64_t power = 0;  // of ten, of the last digit
+
+  /// The number is 0.d1 d2 d3 ... times 10^exponent.
+  std::int64_t exponent() const { return power + std::ssize(digits); }
+};
+/// With the digits as they are written.
+DecimalParts literal_of(std::string_view text);
+/// Neither the first digit nor the last one is 0; zero has no digits.
+DecimalParts parts_of(std::string_view text);
+
+/// Whether a text has a power of ten, from that of the last digit and the number of digits.
+using WithPower = bool (*)(std::int64_t power, std::int64_t digits);
+/// Without zeros at the end.
+std::string decimal_text(const DecimalParts& number, WithPower with_power);
 
 /// Exact comparison of two canonical decimals.
 std::strong_ordering compare_decimals(std::string_view a, std::string_view b);

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "cradle/tools/scene/decimal.hpp"
-#include "cradle/tools/scene/decimal_parts.hpp"
 #include "cradle/tools/scene/rational.hpp"
 
 namespace cradle::tools {

@@ -115,37 +115,34 @@ void read(const Field& field, const Value& value, Scene& scene, bool& target) {
   target = value.text == "true";
 }
 
-void read(const Field& field, const Value& value, Scene& scene, std::vector<Decimal>& target) {
-  if (value.kind != Value::Kind::array) refuse(field, value, scene, "wrong type");
-  target.clear();
-  for (const Value& item : value.items) target.emplace_back(number_text(field, item, scene));
+// The place of a text among the choices of the field.
+std::size_t choice(const Field& field, const Value& value, const Scene& scene) {
+  if (value.kind != Value::Kind::text) refuse(field, value, scene, "wrong type");
+  const auto names = choices_of(field);
+  const auto found = std::ranges::find(names, value.text);
+  if (found == names.end() && !names.empty()) refuse(field, value, scene, "no such choice");
+  return static_cast<std::size_t>(found - names.begin());
 }
 
-void read(const Field& field, const Value& value, Scene& scene, DecimalColumn& target) {
+template <class List>
+requires requires(const List& list) { list.back(); }
+void read(const Field& field, const Value& value, Scene& scene, List& target) {
   if (value.kind != Value::Kind::array) refuse(field, value, scene, "wrong type");
   target = {};
-  for (const Value& item : value.items) target.push_back(number_text(field, item, scene));
-}
-
-void read(const Field& field, const Value& value, Scene& scene, std::vector<std::string>& target) {
-  if (value.kind != Value::Kind::array) refuse(field, value, scene, "wrong type");
-  target.clear();
   for (const Value& item : value.items) {
-    if (item.kind != Value::Kind::text) refuse(field, item, scene, "wrong type");
-    if (const auto names = choices_of(field); !names.empty() && std::ranges::find(names, item.text) == names.end())
-      refuse(field, item, scene, "no such choice");
-    target.push_back(item.text);
+    if constexpr (std::is_same_v<List, std::vector<std::string>>)
+      choice(field, item, scene), target.push_back(item.text);
+    else if constexpr (std::is_same_v<List, DecimalColumn>)
+      target.push_back(number_text(field, item, scene));
+    else
+      target.emplace_back(number_text(field, item, scene));
   }
 }
 
 template <class E>
 requires std::is_enum_v<E>
 void read(const Field& field, const Value& value, Scene& scene, E& target) {
-  if (value.kind != Value::Kind::text) refuse(field, value, scene, "wrong type");
-  const auto names = choices_of(field);
-  const auto found = std::ranges::find(names, value.text);
-  if (found == names.end()) refuse(field, value, scene, "no such choice");
-  target = static_cast<E>(found - names.begin());
+  target = static_cast<E>(choice(field, value, scene));
 }
 
 template <class T> void read(const Field& field, const Value& value, Scene& scene, std::optional<T>& target) {

@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <deque>
+#include <utility>
 
 #include "cradle/tools/scene/checked.hpp"
 
@@ -13,6 +14,12 @@ namespace {
 
 // The member that these pointers to members lead to, one after the other.
 template <auto... Path> constexpr auto member = +[](Scene& scene) -> auto& { return (scene.*....*Path); };
+
+// The text, for as long as the program lives, since rows only refer to their texts.
+std::string_view kept(std::string text) {
+  static std::deque<std::string> texts;
+  return texts.emplace_back(std::move(text));
+}
 
 constexpr Condition always{"", "", "", [](const Scene&) { return true; }};
 
@@ -24,17 +31,18 @@ constexpr std::string_view other_law = "key of another law";
 constexpr Condition inelastic{other_law, "law.type", "law.type = \"inelastic\"", of_law<LawType::inelastic>};
 constexpr Condition wet{other_law, "law.type", "law.type = \"wet\"", of_law<LawType::wet>};
 // `law.type = "wet" or "sticky"`: the key, and the names of the rows in which this member has this value.
-template <class Row> std::string those_that(std::string_view key, const auto& rows, bool Row::*member, bool value) {
+template <class Row>
+std::string_view those_that(std::string_view key, const auto& rows, bool Row::*member, bool value = true) {
   std::vector<std::string> names;
   for (const Row& row : rows)
     if (row.*member == value) names.push_back(fmt::format("\"{}\"", row.name));
   const std::string last = names.back();
   names.pop_back();
-  return fmt::format("{} = {}{}{}", key, fmt::join(names, ", "), names.empty() ? "" : " or ", last);
+  return kept(fmt::format("{} = {}{}{}", key, fmt::join(names, ", "), names.empty() ? "" : " or ", last));
 }
-const std::string that_merge = those_that("law.type", law_rows, &LawRow::merges, true),
-                  that_bounce = those_that("law.type", law_rows, &LawRow::merges, false);
-const Condition merging{other_law, "law.type", that_merge, [](const Scene& s) { return law_row(s).merges; }};
+const std::string_view that_bounce = those_that("law.type", law_rows, &LawRow::merges, false);
+const Condition merging{other_law, "law.type", those_that("law.type", law_rows, &LawRow::merges),
+                        [](const Scene& s) { return law_row(s).merges; }};
 constexpr Condition wet_shock{other_law, "law.type", "law.type = \"wet\" and equal rows", [](const Scene& s) {
                                 return s.law.type == LawType::wet && s.initial.type == InitialType::rows &&
                                        !s.initial.general_rows();
@@ -47,19 +55,15 @@ constexpr Condition plain_rows{
 constexpr Condition general_rows{
     other_state, "initial.type", "initial.type = \"rows\" with [initial.left] and [initial.right]",
     [](const Scene& s) { return s.initial.type == InitialType::rows && s.initial.general_rows(); }};
-template <bool InitialRow::*Member> std::string states_that_are() {
-  return those_that("initial.type", initial_rows, Member, true);
+template <bool InitialRow::*Member> Condition state_that_is() {
+  return {other_state, "initial.type", those_that("initial.type", initial_rows, Member),
+          [](const Scene& s) { return initial_row(s).*Member; }};
 }
-template <bool InitialRow::*Member> constexpr auto state_is = +[](const Scene& s) { return initial_row(s).*Member; };
-const std::string states_in_order = states_that_are<&InitialRow::in_order>(),
-                  states_on_line = states_that_are<&InitialRow::on_line>(),
-                  thermal_states = states_that_are<&InitialRow::thermal>();
-const Condition in_order{other_state, "initial.type", states_in_order, state_is<&InitialRow::in_order>};
+const Condition in_order = state_that_is<&InitialRow::in_order>(), on_line = state_that_is<&InitialRow::on_line>(),
+                thermal_gas = state_that_is<&InitialRow::thermal>();
 constexpr Condition on_lattice{
     other_state, "initial.positions", "initial.positions = \"lattice\" on rows, a ring, in a cold gas or a gas",
     [](const Scene& s) { return initial_row(s).in_order && s.initial.positions == Positions::lattice; }};
-const Condition on_line{other_state, "initial.type", states_on_line, state_is<&InitialRow::on_line>};
-const Condition thermal_gas{other_state, "initial.type", thermal_states, state_is<&InitialRow::thermal>};
 constexpr Condition gas{other_state, "initial.type", "initial.type = \"gas\"", begins_as<InitialType::gas>};
 constexpr Condition ring{other_state, "initial.type", "initial.type = \"ring\"", begins_as<InitialType::ring>};
 constexpr Condition list{other_state, "initial.type", "initial.type = \"list\"", begins_as<InitialType::list>};
@@ -149,26 +153,18 @@ template <auto M> constexpr auto sweep_of = member<&Scene::sweep, M>;
 template <auto... M> constexpr auto output_of = member<&Scene::output, M...>;
 
 // The names of rows, as a choice.
-std::string names_of(const auto& rows) {
+std::string_view names_of(const auto& rows) {
   std::string names;
   for (const auto& row : rows) names.append(names.empty() ? "" : " | ").append(row.name);
-  return names;
+  return kept(std::move(names));
 }
-const std::string scalar_names = names_of(scalar_rows), law_names = names_of(law_rows),
-                  state_names = names_of(initial_rows);
 
 constexpr std::string_view any = "(-inf, inf)";
 constexpr std::string_view within_run = "[run.start, run.until]";
 
-// Puts the name of a wall into a text. The text lives as long as the program, since rows only refer to their texts.
-std::string_view of_side(std::string_view text, std::string_view side) {
-  static std::deque<std::string> texts;
-  return texts.emplace_back(fmt::format(fmt::runtime(text), side));
-}
-
 // The keys of one of the two walls. `of_gas`: the row of its position where it ends a gas.
 template <WallAt WallPair::*Wall> std::vector<Field> wall_fields(std::string_view side, const Field& of_gas) {
-  const auto text = [&](std::string_view with_side) { return of_side(with_side, side); };
+  const auto text = [&](std::string_view with_side) { return kept(fmt::format(fmt::runtime(with_side), side)); };
   static const Condition there{"key of a wall that is not there", text("walls.{}.position"), text("a {} wall"),
                                [](const Scene& s) { return (s.walls.*Wall).position.has_value(); }};
   static const Condition reflects{
@@ -209,10 +205,10 @@ template <WallAt WallPair::*Wall> std::vector<Field> wall_fields(std::string_vie
 }
 
 // key, member, unit, default, range, applies when, documentation
-const std::vector<Field> fields_before_particles{
+const std::vector<Field> fields_before_walls{
     {"title", member<&Scene::title>, "", "\"\"", "", &always, "what the scene shows; printed on pictures"},
 
-    {"law.type", law_of<&scene::Law::type>, "", "required", law_names, &always, "what happens at a collision"},
+    {"law.type", law_of<&scene::Law::type>, "", "required", names_of(law_rows), &always, "what happens at a collision"},
     {"law.restitution", law_of<&scene::Law::restitution>, "", "required", "[0, 1]", &inelastic,
      "factor by which a collision reduces the closing speed; 1 is elastic"},
     {"law.cutoff", law_of<&scene::Law::cutoff>, "l/t", "0", "[0, inf)", &inelastic,
@@ -224,7 +220,7 @@ const std::vector<Field> fields_before_particles{
      "energy E_loss that it takes to rupture a liquid bridge; pairs whose relative motion has less (m w^2/4 for two of "
      "mass m that close at w) merge; 0: all collisions are elastic"},
 
-    {"initial.type", initial_of<&Initial::type>, "", "required", state_names, &always,
+    {"initial.type", initial_of<&Initial::type>, "", "required", names_of(initial_rows), &always,
      "which particles there are at the start"},
     {"initial.left.particles", initial_of<&Initial::left, &scene::Row::particles>, "", "required", "[1, 1e15]",
      &general_rows, "particles of the left row"},
@@ -244,8 +240,11 @@ const std::vector<Field> fields_before_particles{
      "velocity of the particle between the rows"},
     {"initial.particles", initial_of<&Initial::particles>, "", "8000", "[2, 1e15] even", &plain_rows,
      "particles of both rows together; the first ones start at plus and minus half the spacing"},
-};
-const std::vector<Field> fields_before_walls{
+    {"initial.particles", initial_of<&Initial::particles>, "", "8000", "[1, 1e15]", &ring, "particles on the ring"},
+    {"initial.particles", initial_of<&Initial::particles>, "", "8000", "[2, 1e15]", &cold,
+     "particles of the gas, those that move included"},
+    {"initial.particles", initial_of<&Initial::particles>, "", "8000", "[1, 2147483647]", &gas,
+     "particles between the two walls"},
     {"initial.density", initial_of<&Initial::density>, "1/l", "", "(0, inf)", &gas,
      "particles per length, 1 if nothing says it: gives walls.right.position, from that of the left wall on"},
     {"initial.hot", initial_of<&Initial::hot>, "", "1", "[1, initial.particles]", &cold,
@@ -319,7 +318,8 @@ const std::vector<Field> fields_before_walls{
 const std::vector<Field> fields_after_walls{
     {"run.start", run_of<&Run::start>, "t", "0", any, &always, "time at the initial state"},
     {"run.until", run_of<&Run::until>, "t", "required", "[run.start, inf)", &always, "time at which the run ends"},
-    {"run.precision", run_of<&Run::precision>, "", "\"double\"", scalar_names, &always, "the working precision"},
+    {"run.precision", run_of<&Run::precision>, "", "\"double\"", names_of(scalar_rows), &always,
+     "the working precision"},
     {"run.digits", run_of<&Run::digits>, "", "50", "[10, 1000]", &mpfr, "decimal digits of mpfr numbers"},
     {"run.coordinates", run_of<&Run::coordinates>, "", "\"gaps\"", "gaps | absolute", &always,
      "gaps and closing speeds, or plain positions"},
@@ -454,23 +454,10 @@ const std::vector<Field> fields_after_walls{
     {"sweep.replicas", sweep_of<&Sweep::replicas>, "", "1", "[1, 1e15]", &always, "replicas of every point of a sweep"},
 };
 
-// Of the initial states whose row says how many particles there can be.
-template <std::size_t... K> std::vector<Field> number_of_particles(std::index_sequence<K...>) {
-  static const std::string texts[] = {fmt::format("initial.type = \"{}\"", initial_rows[K].name)...};
-  static const Condition states[] = {{other_state, "initial.type", texts[K], begins_as<initial_rows[K].type>}...};
-  std::vector<Field> all;
-  for (const auto& [row, state] : {std::pair(initial_rows[K], &states[K])...})
-    if (!row.particles.empty())
-      all.push_back(
-          {"initial.particles", initial_of<&Initial::particles>, "", "8000", row.particles, state, row.of_particles});
-  return all;
-}
-
 std::vector<Field> joined() {
   std::vector<Field> all;
   for (const std::vector<Field>& some :
-       {fields_before_particles, number_of_particles(std::make_index_sequence<std::size(initial_rows)>()),
-        fields_before_walls,
+       {fields_before_walls,
         wall_fields<&WallPair::left>("left", {"walls.left.position", walls_of<&WallPair::left, &WallAt::position>, "l",
                                               "0", any, &gas, "where the gas begins: the left one of its two walls"}),
         wall_fields<&WallPair::right>("right", {"walls.right.position", walls_of<&WallPair::right, &WallAt::position>,

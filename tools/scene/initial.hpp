@@ -1,6 +1,5 @@
 // The initial states: what a scene says of its particles, and what the program needs to know of each state, one row per
-// state. A new one is a class in core/initial/, its name and row here, and its lines in tools/setup/initial_state.hpp,
-// where scenes become particles; its keys are members here and rows in fields.cpp (core/README.md).
+// state. How a state is added is on the page of core/initial.
 #pragma once
 
 #include <cstdint>
@@ -82,32 +81,15 @@ struct InitialRow {
   bool in_order = false;  // at equal distances or random ones, with patterns of masses; otherwise one by one
   bool on_line = false;   // part of the line is empty, so that there can be a dense core
   bool thermal = false;   // random velocities of a variance
-  // The range of initial.particles and what the manual says of it, in states with a number that the scene gives.
-  std::string_view particles = "", of_particles = "";
 };
 
 inline constexpr InitialRow initial_rows[] = {
     {.type = InitialType::rows, .name = "rows", .in_order = true, .on_line = true},
-    {.type = InitialType::ring,
-     .name = "ring",
-     .in_order = true,
-     .thermal = true,
-     .particles = "[1, 1e15]",
-     .of_particles = "particles on the ring"},
+    {.type = InitialType::ring, .name = "ring", .in_order = true, .thermal = true},
     {.type = InitialType::list, .name = "list", .on_line = true},
     {.type = InitialType::clusters, .name = "clusters"},
-    {.type = InitialType::cold,
-     .name = "cold",
-     .in_order = true,
-     .on_line = true,
-     .particles = "[2, 1e15]",
-     .of_particles = "particles of the gas, those that move included"},
-    {.type = InitialType::gas,
-     .name = "gas",
-     .in_order = true,
-     .thermal = true,
-     .particles = "[1, 2147483647]",
-     .of_particles = "particles between the two walls"},
+    {.type = InitialType::cold, .name = "cold", .in_order = true, .on_line = true},
+    {.type = InitialType::gas, .name = "gas", .in_order = true, .thermal = true},
 };
 static_assert(rows_in_order(initial_rows));
 

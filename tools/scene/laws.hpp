@@ -1,7 +1,6 @@
-// The collision laws: what a scene says of its law, and what the program needs to know of each, one row per law. A new
-// law is a class in core/ (its physics), its name, numbers and row here, rows in fields.cpp if it has numbers of its
-// own, and its lines in tools/engines/engine_of.hpp, where scenes become types (core/README.md). What the paper
-// predicts for it, and what it costs, is a row in tools/theory/laws.cpp.
+// The collision laws: what a scene says of its law, and what the program needs to know of each, one row per law. How a
+// law is added is on the page of core/laws. What the paper predicts for it, and what it costs, is a row in
+// tools/theory/laws.cpp.
 #pragma once
 
 #include <optional>

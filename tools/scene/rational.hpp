@@ -7,6 +7,8 @@
 #include <string>
 #include <string_view>
 
+#include "cradle/tools/scene/decimal.hpp"
+
 namespace cradle::tools {
 
 using Rational = boost::multiprecision::cpp_rational;
@@ -20,9 +22,8 @@ struct Scaled {
 /// The value of a canonical decimal, without zeros at the end of the integer; 0 has the power 0.
 Scaled scaled(std::string_view decimal);
 
-/// A decimal without zeros at its end; with a power of ten where `with_power`, which gets that of the last digit and
-/// the number of digits, says so.
-std::string decimal_text(Scaled number, bool (*with_power)(std::int64_t power, std::int64_t digits));
+/// Without zeros at the end.
+std::string decimal_text(Scaled number, WithPower with_power);
 
 /// For exponents of 0 and more.
 Whole power_of_ten(long exponent);

@@ -1,11 +1,15 @@
 // toml++ parses and reports where each value begins; literals are taken from the text at that place.
 #include "cradle/tools/scene/source.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <charconv>
 #include <optional>
 
 #include <toml++/toml.h>
+
+#include "cradle/tools/scene/decimal.hpp"
 
 namespace cradle::tools {
 namespace {
@@ -13,8 +17,6 @@ namespace {
 constexpr std::string_view blanks = " \t\r\n";
 constexpr std::string_view literal_characters = "0123456789abcdefABCDEFinoxINOX_+-.";
 constexpr std::string_view decimal_characters = "0123456789+-_.eE";
-
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 // The end of the comment or string that begins at `i`; `i` if none begins there.
 std::size_t skip_comment_or_string(std::string_view text, std::size_t i) {
@@ -35,25 +37,13 @@ std::size_t skip_comment_or_string(std::string_view text, std::size_t i) {
   return text.size();
 }
 
-// Whether it is a decimal number in TOML: underscores only between digits, digits on both sides of a point, no leading
-// zero.
+// Whether it is a decimal number in TOML: the canonical form, which has digits on both sides of a point and no zeros
+// before others, leaves out underscores and signs + only.
 bool is_toml_number(std::string_view text) {
-  const auto digits = [&text] {
-    std::size_t n = 0;
-    while (n < text.size() && (is_digit(text[n]) || (text[n] == '_' && n > 0 && text[n - 1] != '_'))) ++n;
-    const bool good = n > 0 && text[n - 1] != '_';
-    text.remove_prefix(n);
-    return good;
-  };
-  const auto skip = [&text](std::string_view any_of) {
-    const bool there = !text.empty() && any_of.find(text.front()) != any_of.npos;
-    text.remove_prefix(there ? 1 : 0);
-    return there;
-  };
-  skip("+-");
-  const bool leading_zero = text.size() > 1 && text[0] == '0' && (text[1] == '_' || is_digit(text[1]));
-  return !leading_zero && digits() && (!skip(".") || digits()) && (!skip("eE") || (skip("+-"), digits())) &&
-         text.empty();
+  std::string plain(text);
+  std::erase_if(plain, [](char c) { return c == '_' || c == '+'; });
+  std::ranges::replace(plain, 'E', 'e');
+  return canonical_decimal(text) == plain;
 }
 
 // toml++ refuses numbers beyond int64, the range of double or its buffer. This puts them in quotation marks, which
@@ -195,7 +185,7 @@ void replace_item(Entries& entries, const Place& place, std::string_view text) {
   if (error != std::errc() || end != index.data() + index.size() || k >= items.size())
     throw Error(place, "not an item of the list", describe(entry->second),
                 items.empty() ? "give the whole list, " + array
-                              : "give " + array + "[0] to " + array + "[" + std::to_string(items.size() - 1) + "]");
+                              : fmt::format("give {0}[0] to {0}[{1}]", array, items.size() - 1));
   auto given = assigned(text, place);
   items[k] = given ? std::move(given->begin()->second) : Value{Value::Kind::text, std::string(text), {}, place};
   items[k].place = {place.source, 0, array};
@@ -214,8 +204,7 @@ std::string describe(const Value& value) {
   case Value::Kind::text:
     return '"' + excerpt(value.text) + '"';
   case Value::Kind::array:
-    return value.items.size() == 1 ? "an array of 1 value"
-                                   : "an array of " + std::to_string(value.items.size()) + " values";
+    return fmt::format("an array of {} value{}", value.items.size(), value.items.size() == 1 ? "" : "s");
   case Value::Kind::table:
     return "a table";
   case Value::Kind::date:

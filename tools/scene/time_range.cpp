@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <compare>
 #include <optional>
 
 #include "cradle/tools/scene/checked.hpp"
@@ -70,7 +71,7 @@ class TimeRange {
     return literal ? std::optional(Decimal(*literal)) : std::nullopt;
   }
 
-  static std::vector<Decimal> by_step(const Decimal& from, const Decimal& until, const Value& every) {
+  static DecimalColumn by_step(const Decimal& from, const Decimal& until, const Value& every) {
     const Decimal step = number(every);
     if (!(step > Decimal("0"))) throw Error(every.place, "out of range", step.text, "give a number above 0");
     const auto steps = static_cast<double>(bin_float((precise(until) - precise(from)) / precise(step)));
@@ -79,14 +80,10 @@ class TimeRange {
                   fmt::format("give a longer time, {:.0g} times at most", most));
     if (!of_one_scale(from, step, until))
       throw Error(every.place, "times of thousands of digits", step.text, "give from, until and every fewer digits");
-    const DecimalColumn all = decimals_by_step(from, step, until);
-    std::vector<Decimal> times;
-    for (std::size_t k = 0; k < all.size(); ++k) times.emplace_back(all[k]);
-    return times;
+    return decimals_by_step(from, step, until);
   }
 
-  std::vector<Decimal> by_points(const Decimal& from, const Decimal& until, const Value& points,
-                                 const Value* spacing) const {
+  DecimalColumn by_points(const Decimal& from, const Decimal& until, const Value& points, const Value* spacing) const {
     const auto given = decimal_integer(number(points).text);
     if (!given || *given < 2 || static_cast<double>(*given) > most)
       throw Error(points.place, "out of range", number(points).text,
@@ -100,14 +97,12 @@ class TimeRange {
     const auto last = static_cast<std::int64_t>(*given) - 1;
     const bin_float first = precise(from), span = precise(until) - first, ratio = log ? precise(until) / first : span;
     constexpr int digits = 15;
-    std::vector<Decimal> times{from};
+    DecimalColumn times{from.text};
     for (std::int64_t k = 1; k <= last; ++k) {
       const bin_float part = bin_float(k) / bin_float(last);
-      times.push_back(
-          k == last
-              ? until
-              : Decimal((log ? bin_float(first * pow(ratio, part)) : bin_float(first + span * part)).str(digits)));
-      if (times[times.size() - 2] < times.back()) continue;
+      const bin_float time = log ? bin_float(first * pow(ratio, part)) : bin_float(first + span * part);
+      times.push_back(k == last ? until.text : Decimal(time.str(digits)).text);
+      if (std::is_lt(compare_decimals(times[times.size() - 2], times.back()))) continue;
       throw Error(points.place, "times closer to each other than 15 digits resolve",
                   fmt::format("{} from {} until {}", *given, from.text, until.text),
                   "give fewer points, a longer range, or every");
@@ -116,12 +111,12 @@ class TimeRange {
   }
 
   // Times outside the run are reported as those of the end which is outside.
-  Value value(const std::vector<Decimal>& times) const {
+  Value value(const DecimalColumn& times) const {
     Value list{Value::Kind::array, "", {}, place("until")};
     list.place.key = key_;
     list.items.reserve(times.size());
-    for (const Decimal& time : times)
-      list.items.push_back({Value::Kind::number, time.text, {}, place(list.items.empty() ? "from" : "until")});
+    for (std::size_t k = 0; k < times.size(); ++k)
+      list.items.push_back({Value::Kind::number, std::string(times[k]), {}, place(k == 0 ? "from" : "until")});
     return list;
   }
 

@@ -5,7 +5,6 @@
 #include <map>
 #include <regex>
 
-#include "cradle/tools/scene/decimal_parts.hpp"
 #include "cradle/tools/scene/fields.hpp"
 #include "cradle/tools/scene/scene.hpp"
 

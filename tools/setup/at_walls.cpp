@@ -1,37 +1,19 @@
-#include "cradle/tools/setup/at_walls.hpp"
+// The distances of particles to walls, in rationals.
+#include "cradle/tools/setup/initial_state.hpp"
 
 #include "cradle/precision/bin_float.hpp"
 #include "cradle/tools/scene/rational.hpp"
-#include "cradle/tools/setup/initial_state.hpp"
 
 namespace cradle::tools {
 namespace {
 
 // The place of an end of rows or a cold gas in spacings: a whole number times 2^-29 or, where the density falls, a
 // double, and so exact in 100 digits.
-Rational in_spacings(const Initial& initial, End end, const Displacement& displacement) {
-  const auto last = [&](const auto& particles) {
-    return particles.position(end == End::left ? 0 : particles.count() - 1);
-  };
-  const bin_float one(1);
-  bin_float place;
-  if (initial.type == InitialType::cold) {
-    const auto all = static_cast<ParticleIndex>(initial.particles), hot = static_cast<ParticleIndex>(initial.hot);
-    HotParticles<bin_float> moving = kicked(first_hot(hot_place(initial), all, hot), one);
-    // Places are counted from the middle of all hot particles.
-    moving.pace.resize(initial.hot);
-    place = last(Cold<bin_float>(all, one, hot_place(initial), std::move(moving), displacement, {},
-                                 initial.density_exponent.value));
-  } else {
-    const auto row = [&](std::uint64_t particles, int speed) {
-      return cradle::Row<bin_float>{static_cast<ParticleIndex>(particles), bin_float(speed), one};
-    };
-    const bool general = initial.general_rows(), centre = general && initial.centre.mass > Decimal("0");
-    place = last(Rows<bin_float>(row(general ? initial.left.particles : initial.particles / 2, 1),
-                                 row(general ? initial.right.particles : initial.particles / 2, -1),
-                                 centre ? std::optional(CentralParticle<bin_float>{one, bin_float(0)}) : std::nullopt,
-                                 displacement));
-  }
+Rational in_spacings(Initial initial, End end, const Displacement& displacement) {
+  initial.spacing = initial.left.density = initial.right.density = Decimal("1");
+  initial.masses = initial.random_masses = {};
+  const auto particles = detail::particles_without_walls<bin_float>(initial, {}, displacement);
+  const bin_float place = particles->position(end == End::left ? 0 : particles->count() - 1);
   using std::ldexp;
   return Rational(ldexp(place, 200).convert_to<Whole>()) / Rational(Whole(1) << 200);
 }

@@ -6,6 +6,7 @@
 #include <concepts>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "cradle/core/initial/cold.hpp"
 #include "cradle/core/initial/gas.hpp"
@@ -15,7 +16,6 @@
 #include "cradle/core/initial/walled.hpp"
 #include "cradle/precision/text.hpp"
 #include "cradle/tools/scene/scene.hpp"
-#include "cradle/tools/setup/at_walls.hpp"
 
 namespace cradle::tools {
 
@@ -93,25 +93,23 @@ inline Displacement displacement_of(const Initial& initial) {
   });
 }
 
-template <Real T>
-std::shared_ptr<const cradle::Particles<T>> cold_particles(const Initial& initial, Displacement displacement) {
-  const auto all = static_cast<ParticleIndex>(initial.particles), hot = static_cast<ParticleIndex>(initial.hot);
-  const cradle::HotPlace place = hot_place(initial);
-  const ParticleIndex first = first_hot(place, all, hot);
-  MassPattern<T> masses = mass_pattern<T>(initial);
-  HotParticles<T> moving = hot == 1
-                               ? kicked(first, number<T>(initial.speed))
-                               : heated(first, hot, number<T>(initial.energy), masses, initial.seed, initial.replica);
-  return std::make_shared<Cold<T>>(all, number<T>(initial.spacing), place, std::move(moving), std::move(displacement),
-                                   std::move(masses), initial.density_exponent.value);
-}
+/// The distance of the first or the last particle to the wall beside it, and its closing speed, from the scene's
+/// decimals: a difference of rounded positions may have no correct digit. They are decimals, exact or with so many
+/// digits that they are rounded to the same number in the working precision. Without a closing speed the particle's
+/// velocity is no number of the scene.
+struct AtWallText {
+  std::string gap;
+  std::optional<std::string> closing_speed;
+};
+/// Of the particle beside the wall at this end, if there is one; in its place if the wall is shaken. Only for lists,
+/// rows and cold gases. `displacement` is that of the scene's particles (null for a list).
+std::optional<AtWallText> at_wall(const Scene& scene, End end, const Displacement& displacement);
 
 namespace detail {
 
 template <Real T>
-std::shared_ptr<const cradle::Particles<T>> particles_without_walls(const Scene& scene,
+std::shared_ptr<const cradle::Particles<T>> particles_without_walls(const Initial& initial, const WallPair& walls,
                                                                     const Displacement& displacement) {
-  const Initial& initial = scene.initial;
   if (initial.type == InitialType::list) {
     const DecimalColumn &x = initial.x, &v = initial.v;
     const auto momentum = sum_of_products(v, initial.m);
@@ -124,7 +122,16 @@ std::shared_ptr<const cradle::Particles<T>> particles_without_walls(const Scene&
                                      momentum ? std::optional<T>(from_text<T>(*momentum)) : std::nullopt,
                                      std::move(between));
   }
-  if (initial.type == InitialType::cold) return cold_particles<T>(initial, displacement);
+  if (initial.type == InitialType::cold) {
+    const auto all = static_cast<ParticleIndex>(initial.particles), hot = static_cast<ParticleIndex>(initial.hot);
+    const ParticleIndex first = first_hot(hot_place(initial), all, hot);
+    MassPattern<T> masses = mass_pattern<T>(initial);
+    HotParticles<T> moving = hot == 1
+                                 ? kicked(first, number<T>(initial.speed))
+                                 : heated(first, hot, number<T>(initial.energy), masses, initial.seed, initial.replica);
+    return std::make_shared<Cold<T>>(all, number<T>(initial.spacing), hot_place(initial), std::move(moving),
+                                     displacement, std::move(masses), initial.density_exponent.value);
+  }
   if (initial.type == InitialType::ring || initial.type == InitialType::gas) {
     using std::sqrt;
     const auto count = static_cast<ParticleIndex>(initial.particles);
@@ -135,7 +142,7 @@ std::shared_ptr<const cradle::Particles<T>> particles_without_walls(const Scene&
     if (initial.type == InitialType::ring)
       return std::make_shared<Ring<T>>(count, number<T>(initial.length), deviation, draw, displacement,
                                        mass_pattern<T>(initial));
-    const Decimal &left = *scene.walls.left.position, &right = *scene.walls.right.position;
+    const Decimal &left = *walls.left.position, &right = *walls.right.position;
     return std::make_shared<Gas<T>>(count, number<T>(left), from_text<T>(difference(right.text, left.text)), deviation,
                                     draw, displacement, mass_pattern<T>(initial));
   }
@@ -197,7 +204,7 @@ std::optional<AtWall<T>> at_wall_in(const Scene& scene, End end, const Displacem
 template <Real T> std::shared_ptr<const cradle::Particles<T>> initial_particles(const Scene& scene) {
   try {
     const Displacement displacement = displacement_of(scene.initial);
-    auto particles = detail::particles_without_walls<T>(scene, displacement);
+    auto particles = detail::particles_without_walls<T>(scene.initial, scene.walls, displacement);
     require_sums(*particles);
     if (!scene.walls.any() && !scene.gravity.acts()) return particles;
     auto left = detail::wall_of<T>(scene.walls.left, scene.initial),

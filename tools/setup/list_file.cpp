@@ -96,8 +96,7 @@ class Reader {
     }
     ended_ = has(&ListedColumns::gap) && listed_.gap.size() < listed_.v.size();
     const auto& [x, v, m, gap, closing] = listed_;
-    if (!has(&ListedColumns::gap) && x.size() > 1)
-      check_neighbours({x[x.size() - 2], v[v.size() - 2]}, {x.back(), v.back()}, range_, place("x"));
+    if (!has(&ListedColumns::gap) && x.size() > 1) check_neighbours(x, v, x.size() - 1, range_, place("x"));
     if (!gap.empty() && std::is_lt(compare_decimals(gap.back(), "0")))
       throw Error(place("gap"), "out of range", std::string(gap.back()), "give 0 or more");
   }
@@ -229,7 +228,8 @@ ListedParticles parse_list(std::istream& csv, const std::string& file_name, cons
                 "give a line x,v or x,v,m and then one line per particle");
   const bool sums = !reader.listed().gap.empty();
   ListedParticles particles = placed(reader.listed(), length, {file_name});
-  if (sums) check_order(particles, run, [&](std::size_t i) { return Place{file_name, 0, fmt::format("gap {}", i)}; });
+  const auto before = [&](std::size_t i) { return Place{file_name, 0, fmt::format("gap {}", i)}; };
+  if (sums) check_order(particles.x, particles.v, run, before);
   return particles;
 }
 

@@ -8,10 +8,16 @@
 #include <istream>
 #include <string>
 
-#include "cradle/tools/scene/particle_order.hpp"
+#include "cradle/tools/scene/checks.hpp"
 #include "cradle/tools/scene/scene.hpp"
 
 namespace cradle::tools {
+
+/// Positions are increasing; only neighbours that do not approach may be at one place. Masses are positive, or empty if
+/// all are 1.
+struct ListedParticles {
+  DecimalColumn x, v, m;
+};
 
 /// Columns as they are given. With gaps, one less than particles (on a ring also that to the first particle), x may
 /// hold the first particle only, or nothing if it is at 0.

@@ -9,8 +9,6 @@
 #else
 #include "cradle/precision/bin_float.hpp"
 #endif
-#include "cradle/tools/scene/checks.hpp"
-#include "cradle/tools/scene/decimal_parts.hpp"
 
 namespace cradle::tools {
 
@@ -37,6 +35,24 @@ std::string cut_off(std::string_view number, unsigned digits) {
   if (all.size() <= digits) all.insert(0, digits + 1 - all.size(), '0');
   all.insert(all.size() - digits, ".");
   return (negative ? "-" : "") + all;
+}
+
+words::Word word_at(const Place& place, const std::string& letters, std::size_t gaps) {
+  try {
+    return words::read_word(letters, gaps);
+  } catch (const words::BadWord& bad) {
+    throw Error(place, bad.what(), bad.found, bad.advice);
+  }
+}
+
+void check_word(const Place& place, const Scene& scene) {
+  if (particles_merge(scene) || scene.initial.on_ring())
+    throw Error(place, "letters are of particles on a line that bounce",
+                scene.initial.on_ring() ? "a ring" : "particles that merge", "remove it, or give output.events");
+  const std::size_t gaps = scene.gaps(), most = 26;
+  if (gaps < 2 || gaps > most)
+    throw Error(place, "not a few particles", fmt::format("{} gaps", gaps), fmt::format("give 2 to {}", most));
+  if (*scene.output.word != any_word) word_at(place, *scene.output.word, gaps);
 }
 
 namespace {

@@ -1,4 +1,4 @@
-// The self-similar state of a word as decimals: gaps and closing speeds, positions and velocities.
+// Words of scenes, and the self-similar state of a word as decimals: gaps and closing speeds, positions and velocities.
 #pragma once
 
 #include <cstddef>
@@ -78,6 +78,12 @@ WordStart start_text(const WordParticles& particles, const words::System<T>& sys
   for (const T& speed : v) text.v.push_back(shown(T(speed - drift)));
   return text;
 }
+
+/// The word of these letters, which stand at this place. Throws Error.
+words::Word word_at(const Place& place, const std::string& letters, std::size_t gaps);
+
+/// Checks output.word, which is at this place, once the particles of a list are read.
+void check_word(const Place& place, const Scene& scene);
 
 /// Gives the scene the particles of a word, which is in place of the name of a list, at the scene's restitution, with
 /// more digits than its precision has. Throws Error if the word has no self-similar state there.

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "cradle/tools/support/checksum.hpp"
+#include "cradle/tools/support/bytes.hpp"
 #include "cradle/tools/support/version.hpp"
 
 namespace cradle::tools {

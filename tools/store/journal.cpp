@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "cradle/tools/support/checksum.hpp"
+#include "cradle/tools/support/bytes.hpp"
 #include "cradle/tools/support/errors.hpp"
 #include "cradle/tools/support/version.hpp"
 

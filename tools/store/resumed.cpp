@@ -11,7 +11,7 @@
 #include "cradle/tools/run/run.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
 #include "cradle/tools/store/run_files.hpp"
-#include "cradle/tools/support/checksum.hpp"
+#include "cradle/tools/support/bytes.hpp"
 
 namespace cradle::tools {
 

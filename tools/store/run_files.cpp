@@ -8,8 +8,8 @@
 #include <random>
 
 #include "cradle/tools/result/writer.hpp"
-#include "cradle/tools/support/checksum.hpp"
-#include "cradle/tools/support/notify.hpp"
+#include "cradle/tools/support/bytes.hpp"
+#include "cradle/tools/support/progress.hpp"
 
 namespace cradle::tools {
 

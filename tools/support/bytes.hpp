@@ -1,8 +1,11 @@
-// Values as bytes, by their lists of fields (core/base/state.hpp): records of journals, messages between ranks.
+// Values as bytes, by their lists of fields (core/base/state.hpp): records of journals, messages between ranks. And
+// whether bytes on a disk have changed.
 #pragma once
 
+#include <cstdint>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "cradle/core/base/state.hpp"
@@ -24,5 +27,8 @@ template <class X> X from_bytes(std::string bytes) {
     throw Error({}, "a record that cannot be read", error.what(), "take the file from a copy, or remove it", Exit::io);
   }
 }
+
+/// The checksum of `bytes`, CRC-64/XZ (reflected polynomial of ECMA-182). To continue after earlier bytes, give theirs.
+std::uint64_t crc64(std::string_view bytes, std::uint64_t of_bytes_before = 0);
 
 }  // namespace cradle::tools

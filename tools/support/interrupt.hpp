@@ -24,7 +24,7 @@ class Interrupt {
   std::atomic<bool> heeded_ = false;
 };
 
-/// Whether the program was started under nohup, as hang_ups.cpp, a part of the program alone, reads it before main().
+/// Whether the program was started under nohup: before_main.cpp, a part of the program alone, reads it.
 inline bool hang_ups_ignored = false;
 
 /// The exit status of a program that this signal has interrupted.

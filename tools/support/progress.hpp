@@ -1,8 +1,8 @@
-// Progress on standard error: a bar on a terminal, else a plain line every minute or, if requested, every ten seconds.
-// For a run: simulated time, collisions, collisions/s, time left where it can be predicted; for an ensemble: replicas,
-// replicas/s, time left. For programs that call this one: if CRADLE_PROGRESS_FD names a socket, each line is also
-// written there as `SHARE<tab>TEXT`, with SHARE from 0 to 1; and once that program has ended, this one is interrupted,
-// as by SIGTERM.
+// Messages and progress on standard error. Progress is a bar on a terminal, else a plain line every minute or, if
+// requested, every ten seconds. For a run: simulated time, collisions, collisions/s, time left where it can be
+// predicted; for an ensemble: replicas, replicas/s, time left. For programs that call this one: if CRADLE_PROGRESS_FD
+// names a socket, each line is also written there as `SHARE<tab>TEXT`, with SHARE from 0 to 1; and once that program
+// has ended, this one is interrupted, as by SIGTERM.
 #pragma once
 
 #include <chrono>
@@ -10,13 +10,33 @@
 #include <mutex>
 #include <optional>
 #include <string>
-
-#include "cradle/tools/support/time_left.hpp"
+#include <string_view>
+#include <utility>
+#include <vector>
 
 namespace cradle::tools {
 
+/// Prints a message. If nobody can read it (the terminal has closed) work continues.
+void notify(std::string_view text);
+
 /// "6 s", "3 min 20 s", "2 h 05 min".
 std::string duration(double seconds);
+
+/// How long a run still needs, from its pace so far. What a unit of simulated time costs may grow: in a dry shock it
+/// grows linearly until the collapse, and by orders of magnitude there. With c the cost of a unit in the last quarter
+/// of the computing and in the quarter before, c is extrapolated linearly to the rest of the run. Nobody can foresee a
+/// jump, so an answer is given only while the totals that would have been predicted earlier, at a half and at three
+/// quarters of the computing so far, agree with the present one within a factor of 1.5.
+class TimeLeft {
+ public:
+  /// The run has reached this simulated time after so many seconds of computing; both increase.
+  void add(double seconds, double time);
+  /// Seconds of computing until a simulated time; nothing if they cannot be predicted.
+  std::optional<double> until(double end) const;
+
+ private:
+  std::vector<std::pair<double, double>> points_;
+};
 
 /// One line; on a terminal it is redrawn in place and removed at the end.
 class ProgressLine {
@@ -56,7 +76,7 @@ class Progress {
   void report(double time, std::uint64_t collisions);
 
  private:
-  using Clock = std::chrono::steady_clock;
+  using Clock = ProgressLine::Clock;
 
   ProgressLine line_;
   double start_, until_;

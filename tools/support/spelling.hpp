@@ -1,8 +1,10 @@
-// The known word that somebody may have meant.
+// Words in messages: the known one that somebody may have meant, and one as people give it to a shell.
 #pragma once
 
 #include <algorithm>
+#include <cctype>
 #include <cstddef>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -38,6 +40,17 @@ template <class Words> std::string_view nearest_word(std::string_view word, cons
       nearest = candidate;
     }
   return nearest;
+}
+
+/// The word, in quotation marks where it needs them.
+inline std::string shell_word(std::string_view word) {
+  const auto plain = [](unsigned char c) {
+    return std::isalnum(c) != 0 || std::string_view("._-+/").find(static_cast<char>(c)) != std::string_view::npos;
+  };
+  if (!word.empty() && std::ranges::all_of(word, plain)) return std::string(word);
+  std::string quoted = "'";
+  for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
 }
 
 }  // namespace cradle::tools

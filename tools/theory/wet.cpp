@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "cradle/core/theory/cluster_force.hpp"
 #include "cradle/core/theory/inelastic_shock.hpp"
 #include "cradle/core/theory/wet_energy.hpp"
 #include "cradle/core/theory/wet_shock.hpp"

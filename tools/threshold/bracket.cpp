@@ -1,4 +1,4 @@
-#include "cradle/tools/threshold/bracket.hpp"
+#include "cradle/tools/threshold/threshold.hpp"
 
 #include <algorithm>
 #include <cstdlib>
@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include "cradle/tools/scene/rational.hpp"
-#include "cradle/tools/support/errors.hpp"
 
 namespace cradle::tools {
 

@@ -1,6 +1,6 @@
-// Symbols as in core/engine/two_gaps.hpp, with one restitution e = r_1 = r_2: S = c_1 c_2 - 2 e, L the larger root of
-// L^2 - S L + e^2 = 0, u the speed at which the gap just closed opens, w the closing speed of the other one.
-#include "cradle/tools/threshold/exact_collapse.hpp"
+// Symbols as in core/engine/collapse_ahead.hpp, with one restitution e = r_1 = r_2: S = c_1 c_2 - 2 e, L the larger
+// root of L^2 - S L + e^2 = 0, u the speed at which the gap just closed opens, w the closing speed of the other one.
+#include "cradle/tools/threshold/threshold.hpp"
 
 #include <array>
 

@@ -12,7 +12,6 @@
 #include "cradle/tools/store/journal.hpp"
 #include "cradle/tools/support/threads.hpp"
 #include "cradle/tools/theory/cost.hpp"
-#include "cradle/tools/threshold/exact_collapse.hpp"
 
 namespace cradle::tools {
 

@@ -1,4 +1,4 @@
-// The value of a key at which the outcome of a run changes: by bisection on decimals (bracket.hpp), with what is proved
+// The value of a key at which the outcome of a run changes: by bisection on decimals (bracket.cpp), with what is proved
 // of the two runs beside it. Finished runs are kept in FILE.part, or in FILE itself, and are not repeated.
 #pragma once
 
@@ -18,7 +18,6 @@
 #include "cradle/tools/support/interrupt.hpp"
 #include "cradle/tools/support/progress.hpp"
 #include "cradle/tools/support/table.hpp"
-#include "cradle/tools/threshold/bracket.hpp"
 
 namespace cradle::tools {
 
@@ -83,6 +82,45 @@ class ThresholdProblem {
   std::vector<std::string> items_;  // of a list; empty for a single number
   std::size_t item_ = 0;
 };
+
+/// Two decimals between which an outcome changes, and the next one to try: first whole multiples of a coarse power of
+/// ten, then of finer ones, each by bisection. So values are as short as can be, and a search to more digits begins
+/// with the values of a search to fewer. All arithmetic is on the decimals, exactly.
+class Bracket {
+ public:
+  /// low < high, of which `digits` significant ones are wanted, counted from the first of the larger end; `whole`: only
+  /// whole numbers. Throws Error for numbers of thousands of digits.
+  Bracket(Decimal low, Decimal high, unsigned digits, bool whole);
+
+  const Decimal& low() const { return low_; }
+  const Decimal& high() const { return high_; }
+
+  /// The value to try; none if the ends are neighbours.
+  const std::optional<Decimal>& next() const { return next_; }
+  /// The outcome at next() is that of the low end, or is not.
+  void narrow(bool as_at_low);
+
+  /// About how many values are left.
+  unsigned values_left() const;
+
+ private:
+  void find_next();
+
+  Decimal low_, high_;
+  long unit_ = 0, last_ = 0;  // powers of ten: of the values tried now, and of the finest ones
+  std::optional<Decimal> next_;
+};
+
+struct ExactCollapse {
+  bool collapse = false;         // before the end of the run
+  std::uint64_t collisions = 0;  // made until that was decided
+};
+/// Whether three particles collapse, decided in rational numbers from the scene's decimals: collision by collision
+/// until the condition of the theorem in core/engine/README.md holds or fails. Nothing is rounded, so there is one
+/// answer however near to a threshold; a run would need more collisions the nearer it is. Nothing for other scenes, and
+/// where it stays open: two collisions at one time, a time of collapse that is just the end of the run, or no decision
+/// within some sixty collisions.
+std::optional<ExactCollapse> exact_collapse(const Scene& scene);
 
 /// One run, or one decision without a run.
 struct RunAt {

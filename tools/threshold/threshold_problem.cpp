@@ -8,8 +8,7 @@
 
 #include "cradle/tools/scene/fields.hpp"
 #include "cradle/tools/scene/source.hpp"
-#include "cradle/tools/support/checksum.hpp"
-#include "cradle/tools/support/shell.hpp"
+#include "cradle/tools/support/bytes.hpp"
 #include "cradle/tools/support/spelling.hpp"
 #include "cradle/tools/support/version.hpp"
 
@@ -85,9 +84,8 @@ void ThresholdProblem::choose_outcome(const std::string& compare) {
   if (!compare.empty()) {
     const auto* const row = std::ranges::find(compared, compare, &CompareRow::name);
     if (row == compared.end()) {
-      std::string names;
-      for (const CompareRow& known : compared) names += (names.empty() ? "" : ", ") + std::string(known.name);
-      throw Error({"", 0, "--outcome"}, "no such outcome", compare, "give one of " + names);
+      throw Error({"", 0, "--outcome"}, "no such outcome", compare,
+                  fmt::format("give one of {}", fmt::join(numbers_of(compared, &CompareRow::name), ", ")));
     }
     compare_ = row->type;
   }

@@ -6,7 +6,6 @@
 #include <bit>
 #include <cmath>
 #include <concepts>
-#include <cstddef>
 #include <type_traits>
 
 #include "cradle/core/laws/law.hpp"

@@ -5,62 +5,22 @@
 
 #include <array>
 #include <concepts>
-#include <cstddef>
-#include <cstdint>
+#include <iterator>
+#include <tuple>
+#include <utility>
 
-#include "cradle/core/chains/masses.hpp"
-#include "cradle/core/engine/status.hpp"
-#include "cradle/core/laws/law.hpp"
-#include "cradle/core/laws/one_of.hpp"
 #include "cradle/core/parallel/gap_segment.hpp"
 #include "cradle/core/parallel/steps/step_numbers.hpp"
 #include "cradle/core/parallel/steps/steps.hpp"
-#include "cradle/core/queue/ledger.hpp"
 
 namespace cradle {
 
-// Uses private members of the segment's part.
-template <class Law, class T, class Masses>
-requires(StepNumbers<T>::template by_law<Law> && !Watched<Masses>) struct Stepped<Law, GapSegment<T, Masses>> final
-    : private StepScalars {
+// What a segment of either chain does around its steps. Uses private members of its part.
+template <class Part> class AroundSteps : protected StepScalars {
+ protected:
+  using T = typename Part::Scalar;
   using Numbers = StepNumbers<T>;
-
- public:
-  static constexpr bool possible = true, on_rings = !Numbers::pairs;
-  using Part = GapSegment<T, Masses>;
   using Report = typename Part::Report;
-
-  // Makes all collisions up to the local time `stop`, fewer than `most`, on what the part has taken.
-  bool run(const Steps& steps, Part& part, const Law& law, const T& stop, std::uint64_t most, Report& report) {
-    if (Numbers::pairs && (report.observe || part.curved())) return false;  // the event loop logs and knows curves
-    if (report.pace.rest > 0) return --report.pace.rest, false;
-    part_ = &part, law_ = &law, report_ = &report;
-    const StepTask task = task_of(stop, most);
-    if (!(task.rounder > 0)) return false;  // a plain sum
-    made_ = {};
-    StepResult inner;
-    StepPace& pace = report.pace;
-    const bool done = fill() && steps.run(line_, task, *this, pace, inner) && Numbers::all_made(line_, stop);
-    pace.made(done);
-    if (!done) return false;
-    report.counts = made_.counts;
-    report.counts.collisions += inner.collisions;
-    report.counts.below_cutoff += inner.below_cutoff;
-    const T last = Numbers::of(inner.last, inner.low_last);
-    report.last_collision = made_.last < last ? last : made_.last;
-    if (report.counts.collisions >= most) return false;
-    for (std::size_t i = 0; Numbers::pairs && i < line_.gaps(); ++i) Numbers::give(line_, i, part.line_, slot(i));
-    if constexpr (Ledger<T>::in_any_order) {
-      Ledger<T> ledger = part.line_.gaps.ledger();
-      ledger.add_sums(inner.lost, static_cast<std::int64_t>(inner.rest));
-      part.line_.gaps.set_ledger(ledger);
-    }
-    part.line_.gaps.drop_lags(Part::first(), line_.gaps());
-    return true;
-  }
-
- private:
-  static constexpr bool equal = std::same_as<Masses, IdenticalMasses<T>>;
 
   struct Totals {
     Counts counts;
@@ -68,6 +28,85 @@ requires(StepNumbers<T>::template by_law<Law> && !Watched<Masses>) struct Steppe
   };
 
   static Slot slot(std::size_t i) { return Part::first() + i; }
+  bool is_held(Slot s) const { return s - Part::first() < line_.gaps(); }  // not beyond an end
+
+  // Makes the collisions of a task up to the local time `stop` on the line, which `fill` fills, if it can.
+  template <class Fill> bool make(const Steps& steps, const StepTask& task, const T& stop, const Fill& fill) {
+    if (!(task.rounder > 0)) return false;  // a plain sum
+    made_ = {};
+    StepResult inner;
+    const bool done = fill() && steps.run(line_, task, *this, report_->pace, inner) && Numbers::all_made(line_, stop);
+    report_->pace.made(done);
+    if (!done) return false;
+    report_->counts = made_.counts;
+    report_->counts.collisions += inner.collisions;
+    report_->counts.below_cutoff += inner.below_cutoff;
+    const T last = Numbers::of(inner.last, inner.low_last);
+    report_->last_collision = made_.last < last ? last : made_.last;
+    if (report_->counts.collisions >= task.most) return false;
+    auto& cells = part_->line_;
+    for (std::size_t i = 0; Numbers::pairs && i < line_.gaps(); ++i) Numbers::give(line_, i, cells, slot(i));
+    if constexpr (Ledger<T>::in_any_order) {
+      Ledger<T> ledger = cells.gaps.ledger();
+      ledger.add_sums(inner.lost, static_cast<std::int64_t>(inner.rest));
+      cells.gaps.set_ledger(ledger);
+    }
+    cells.gaps.drop_lags(Part::first(), line_.gaps());
+    return true;
+  }
+
+  void keep() override {
+    kept_.made = made_, kept_.ledger = part_->line_.gaps.ledger(), kept_.edges = part_->edges();
+    kept_.logged = std::apply([](const auto&... log) { return std::array{std::ssize(log)...}; }, report_->logs());
+  }
+  void restore() override {
+    made_ = kept_.made;
+    part_->line_.gaps.set_ledger(kept_.ledger);
+    part_->edges() = kept_.edges;
+    part_->set_inner();
+    const auto* length = kept_.logged.data();
+    std::apply([&](auto&... log) { (log.erase(log.begin() + *length++, log.end()), ...); }, report_->logs());
+  }
+
+  StepLine line_;
+  Part* part_ = nullptr;
+  Report* report_ = nullptr;
+  Totals made_;  // by the segment, not as vectors; by other laws also all that is below the cut-off
+
+ private:
+  template <class... X> static std::tuple<X...> copies(std::tuple<X&...>);
+  struct Kept {
+    Totals made;
+    Ledger<T> ledger;
+    decltype(copies(std::declval<Part&>().edges())) edges;
+    std::array<std::ptrdiff_t, std::tuple_size_v<decltype(std::declval<Report&>().logs())>> logged;  // lengths of logs
+  };
+  Kept kept_;
+};
+
+// Uses private members of the segment's part.
+template <class Law, class T, class Masses>
+requires(StepNumbers<T>::template by_law<Law> && !Watched<Masses>) struct Stepped<Law, GapSegment<T, Masses>> final
+    : private AroundSteps<GapSegment<T, Masses>> {
+  using Part = GapSegment<T, Masses>;
+  using Around = AroundSteps<Part>;
+  using typename Around::Numbers, typename Around::Report;
+
+ public:
+  static constexpr bool possible = true, on_rings = !Numbers::pairs;
+
+  // Makes all collisions up to the local time `stop`, fewer than `most`, on what the part has taken.
+  bool run(const Steps& steps, Part& part, const Law& law, const T& stop, std::uint64_t most, Report& report) {
+    if (Numbers::pairs && (report.observe || part.curved())) return false;  // the event loop logs and knows curves
+    if (report.pace.rest > 0) return --report.pace.rest, false;
+    part_ = &part, law_ = &law, report_ = &report;
+    return Around::make(steps, task_of(stop, most), stop, [this] { return fill(); });
+  }
+
+ private:
+  static constexpr bool equal = std::same_as<Masses, IdenticalMasses<T>>;
+
+  using Around::is_held, Around::line_, Around::made_, Around::part_, Around::report_, Around::slot;
 
   StepTask task_of(const T& stop, std::uint64_t most) const {
     const auto& gaps = part_->line_.gaps;
@@ -155,7 +194,6 @@ requires(StepNumbers<T>::template by_law<Law> && !Watched<Masses>) struct Steppe
     if (made_.last < time) made_.last = time;
     return true;
   }
-  bool is_held(Slot s) const { return s - Part::first() < line_.gaps(); }  // not beyond an end
 
   // Logs a collision before it is made, if it is observed.
   void log(Slot s, const T& time, bool below_cutoff) {
@@ -177,34 +215,12 @@ requires(StepNumbers<T>::template by_law<Law> && !Watched<Masses>) struct Steppe
       }
   }
 
-  void keep() override {
-    kept_.made = made_, kept_.ledger = part_->line_.gaps.ledger(), kept_.edges = part_->edges();
-    kept_.left = report_->left.size(), kept_.right = report_->right.size(), kept_.observed = report_->observed.size();
-    kept_.at_left = report_->to_left.at_end.size(), kept_.at_right = report_->to_right.at_end.size();
-  }
   void restore() override {
-    made_ = kept_.made;
-    part_->line_.gaps.set_ledger(kept_.ledger);
-    part_->set_edges(kept_.edges);
-    report_->left.resize(kept_.left, {false, T(0), T(0)}), report_->right.resize(kept_.right, {false, T(0), T(0)});
-    report_->to_left.at_end.resize(kept_.at_left), report_->to_right.at_end.resize(kept_.at_right);
-    report_->observed.resize(kept_.observed);
+    Around::restore();
     set_inner();
   }
 
-  struct Kept {
-    Totals made;
-    Ledger<T> ledger;
-    typename Part::Edges edges;
-    std::size_t left, right, at_left, at_right, observed;  // lengths of logs
-  };
-
-  StepLine line_;
-  Part* part_ = nullptr;
   const Law* law_ = nullptr;
-  Report* report_ = nullptr;
-  Totals made_;  // at edges; by other laws all that is below the cut-off
-  Kept kept_;
 };
 
 }  // namespace cradle

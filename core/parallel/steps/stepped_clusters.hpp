@@ -4,15 +4,10 @@
 // its copy anew and goes through its event loop.
 
 #include <array>
-#include <cstddef>
-#include <cstdint>
-#include <tuple>
 
-#include "cradle/core/engine/status.hpp"
-#include "cradle/core/laws/law.hpp"
 #include "cradle/core/laws/one_of.hpp"
 #include "cradle/core/parallel/cluster_segment.hpp"
-#include "cradle/core/parallel/steps/steps.hpp"
+#include "cradle/core/parallel/steps/stepped.hpp"
 
 namespace cradle {
 
@@ -20,11 +15,11 @@ namespace cradle {
 template <class Law>
 requires(!Law::bounces_only && requires(const Law& law) {
   law_as<Wet<double>>(law);
-}) struct Stepped<Law, ClusterSegment<double>> final : private StepScalars {
+}) struct Stepped<Law, ClusterSegment<double>> final : private AroundSteps<ClusterSegment<double>> {
+  using Part = ClusterSegment<double>;
+
  public:
   static constexpr bool possible = true, on_rings = false;
-  using Part = ClusterSegment<double>;
-  using Report = typename Part::Report;
 
   // Makes all collisions up to the local time `stop`, fewer than `most`, on what the part has taken.
   bool run(const Steps& steps, Part& part, const Law& law, double stop, std::uint64_t most, Report& report) {
@@ -39,34 +34,17 @@ requires(!Law::bounces_only && requires(const Law& law) {
     task.floor = gaps.floor();
     task.rounder = gaps.ledger().rounder(), task.per_fine = gaps.ledger().per_fine();
     task.stop = stop, task.most = most;
-    if (!(task.rounder > 0)) return false;  // a plain sum
-    made_ = {};
-    const std::size_t held = part.last_ + 1 - Part::first_;
-    line_.take(&part.line_.gaps[Part::first_], Part::first_, &gaps.lag(Part::first_), held);
-    line_.mark(0, line_.index(part.inner_first_), StepLine::edge);
-    line_.mark(line_.index(part.inner_last_) - 1, static_cast<std::ptrdiff_t>(held), StepLine::edge);
-    mark_edges();
-    StepResult inner;
-    const bool done = steps.run(line_, task, *this, report.pace, inner);
-    report.pace.made(done);
-    if (!done) return false;
-    report.counts = made_.counts;
-    report.counts.collisions += inner.collisions;
-    report.last_collision = std::max(made_.last, inner.last);
-    if (report.counts.collisions >= most) return false;
-    Ledger<double> ledger = gaps.ledger();
-    ledger.add_sums(inner.lost, static_cast<std::int64_t>(inner.rest));
-    part.line_.gaps.set_ledger(ledger);
-    part.line_.gaps.drop_lags(Part::first_, held);
-    return true;
+    return make(steps, task, stop, [&] {
+      const std::size_t held = part.last_ + 1 - Part::first_;
+      line_.take(&part.line_.gaps[Part::first_], Part::first_, &gaps.lag(Part::first_), held);
+      line_.mark(0, line_.index(part.inner_first_), StepLine::edge);
+      line_.mark(line_.index(part.inner_last_) - 1, static_cast<std::ptrdiff_t>(held), StepLine::edge);
+      mark_edges();
+      return true;
+    });
   }
 
  private:
-  struct Totals {
-    Counts counts;
-    double last = -StepLine::never;
-  };
-
   // How many links decisions in steps follow on either side (decisions.inl): if one of these links skips a vacant cell,
   // the nearest such cell is as near.
   static constexpr std::ptrdiff_t near = 3;
@@ -107,36 +85,15 @@ requires(!Law::bounces_only && requires(const Law& law) {
     made_.last = std::max(made_.last, time);
     return true;
   }
-  bool is_held(Slot s) const { return s - Part::first_ < line_.gaps(); }  // not beyond an end
 
   void outcomes(const std::uint32_t*, std::size_t) override {}  // Wet is a law of vectors
 
-  void keep() override {
-    kept_.made = made_, kept_.ledger = part_->line_.gaps.ledger(), kept_.edges = part_->edges();
-    kept_.left = report_->left.size(), kept_.right = report_->right.size(), kept_.carried = report_->carried.size();
-  }
   void restore() override {
-    made_ = kept_.made;
-    part_->line_.gaps.set_ledger(kept_.ledger);
-    part_->edges() = kept_.edges;
-    part_->set_inner();
-    report_->left.resize(kept_.left), report_->right.resize(kept_.right), report_->carried.resize(kept_.carried);
+    AroundSteps::restore();
     report_->nothing_left = false;
   }
 
-  struct Kept {
-    Totals made;
-    Ledger<double> ledger;
-    std::tuple<Slot, Slot, Slot, Slot, Slot, Slot> edges;
-    std::size_t left, right, carried;  // lengths of logs
-  };
-
-  StepLine line_;
-  Part* part_ = nullptr;
   const Wet<double>* law_ = nullptr;
-  Report* report_ = nullptr;
-  Totals made_;  // by this, not as vectors
-  Kept kept_;
 };
 
 }  // namespace cradle

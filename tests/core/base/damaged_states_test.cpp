@@ -10,6 +10,7 @@
 
 #include "cradle/core/chains/cluster_chain.hpp"
 #include "cradle/core/engine/sticky_gas.hpp"
+#include "cradle/tests/core/compare.hpp"
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/texts.hpp"
 
@@ -34,9 +35,8 @@ template <class Run> class Contradicted {
     Run run = make_();
     run.advance(3);
     change(run);
-    SavedState state = SavedState::of(run);
     Run later = make_();
-    return test::message_of([&] { load(state, later); });
+    return test::message_of([&] { restore(later, run); });
   }
   std::function<Run()> make_;
 };
@@ -173,9 +173,8 @@ TEST(DamagedStates, TimesThatOverflowEnd) {
     gaps[s].gap = gap, gaps[s].time = time, gaps[s].due = due, gaps[s].closing = closing;
     ++s;
   }
-  SavedState state = SavedState::of(run);
   auto later = make();
-  load(state, later);
+  restore(later, run);
   EXPECT_EQ(later.advance(5), Status::reached);
 }
 

@@ -7,8 +7,8 @@
 #include "cradle/core/chains/cluster_chain.hpp"
 #include "cradle/core/engine/sticky_gas.hpp"
 #include "cradle/core/parallel/segments.hpp"
+#include "cradle/tests/core/compare.hpp"
 #include "cradle/tests/core/fixtures.hpp"
-#include "cradle/tests/core/saved.hpp"
 #include "cradle/tests/texts.hpp"
 
 namespace cradle::test::state_test {
@@ -16,10 +16,8 @@ namespace cradle::test::state_test {
 using Dry = Inelastic<double>;
 
 template <class X> X there_and_back(const X& x) {
-  SavedState state = SavedState::of(x);
   X y{};
-  load(state, y);
-  EXPECT_EQ(state.left(), 0U);
+  restore(y, x);
   return y;
 }
 
@@ -62,9 +60,8 @@ void expect_always_taken(const Make& make, double step, int steps, Segments&&...
   auto run = make();
   for (int k = 1; k <= steps; ++k) {
     run.advance(step * k, segments...);
-    SavedState state = SavedState::of(run);
     auto later = make();
-    EXPECT_NO_THROW(load(state, later)) << run.last_collision_time();
+    EXPECT_NO_THROW(restore(later, run)) << run.last_collision_time();
   }
 }
 

@@ -8,7 +8,6 @@
 #include <algorithm>
 
 #include "cradle/tests/core/fixtures.hpp"
-#include "cradle/tests/core/three_collapses.hpp"
 
 namespace cradle::test::collapse_policy_test {
 
@@ -50,7 +49,7 @@ TEST_P(CollapsePolicies, StopSettlesTheCollapseTime) {
   const CollapseReport<double>& report = run.collapse();
   ASSERT_TRUE(report.settled);
   // Settled by the second collision, after at most six roundings each of a gap, of speeds and of time, none of which
-  // acts on t_c by more than a factor 3: t_c = 1 + g/z, g = u = 1 and z > 1 (two_gaps.hpp).
+  // acts on t_c by more than a factor 3: t_c = 1 + g/z, g = u = 1 and z > 1 (collapse_ahead.hpp).
   EXPECT_NEAR(report.time.value(), collapse_time(), 2 * epsilon * collapse_time());
   EXPECT_LE(std::abs(report.time.value() - collapse_time()), report.uncertainty);
   EXPECT_LE(report.uncertainty, 27 * epsilon);
@@ -145,17 +144,6 @@ TEST(CollapsePolicies, TripleCollisionWithoutEndIsNoticed) {
     auto in_positions = position_run<double>(particles, Inelastic(0.05), {policy, 0, {}});
     EXPECT_EQ(in_positions.advance(2), Status::exhausted);
   }
-}
-
-TEST(CollapsePolicies, TripleCollisionThatEndsIsResolvedFromTheLeft) {
-  // eps = 0.5: p_n = 1, 7/4, 13/16, -17/64 for left, right, left: by hand from p_{n+1} = 3/4 p_n - p_{n-1}/2.
-  auto run = gap_run<double>(list<double>({0, 1, 2}, {1, 0, -1}), Inelastic(0.5));
-  std::vector<std::pair<ParticleIndex, double>> collisions;
-  ASSERT_EQ(run.advance(2, [&](const Collision<double>& c) { collisions.emplace_back(c.left, c.closing_speed); }),
-            Status::reached);
-  const std::vector<std::pair<ParticleIndex, double>> expected{{0, 1}, {1, 1.75}, {0, .8125}};
-  EXPECT_EQ(collisions, expected);
-  EXPECT_EQ(run.chain().account().order_lost, 0U);
 }
 
 // A light particle between two heavy ones: its closing speed tends to the heavy ones' speed over 1 - eps and never

@@ -13,7 +13,6 @@
 #include "cradle/core/initial/poisson.hpp"
 #include "cradle/tests/core/between_walls.hpp"
 #include "cradle/tests/core/compare.hpp"
-#include "cradle/tests/core/saved.hpp"
 
 namespace cradle::test::same_bits_test {
 

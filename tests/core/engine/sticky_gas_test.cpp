@@ -42,8 +42,7 @@ TEST(StickyGas, InterruptedItContinuesToTheSameBits) {
     int times = 0;
     for (; interrupted.advance(t) == Status::interrupted; ++times) {
       StickyGas<double> loaded(rows, 0.0, policy);
-      SavedState state = SavedState::of(interrupted);
-      load(state, loaded);
+      restore(loaded, interrupted);
       interrupted = std::move(loaded);
     }
     EXPECT_GE(times, 2);

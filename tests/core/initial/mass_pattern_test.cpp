@@ -1,22 +1,20 @@
 // Masses that repeat, on rows, rings and in cold gases. Proves: particles have the masses of the pattern and their sums
-// are those particle by particle; a pattern of equal masses changes no bit; a ring has no momentum; runs in segments
-// have the bits of the plain loop. (Energy and momentum are kept, streamed is held and listed, at any cadence:
-// engine/same_bits_test.cpp. Gaps against positions: engine/properties_test.cpp.)
+// are those particle by particle; a pattern of equal masses changes no bit; a ring has no momentum. (Energy and
+// momentum are kept, streamed is held and listed, at any cadence: engine/same_bits_test.cpp. Gaps against positions:
+// engine/properties_test.cpp. In segments: parallel/segments_test.cpp.)
 #include <gtest/gtest.h>
 
-#include "cradle/tests/core/segmented.hpp"
+#include "cradle/tests/core/compare.hpp"
+#include "cradle/tests/core/fixtures.hpp"
 
 namespace cradle::test::mass_pattern_test {
 
 const auto &three = three_masses, &two = one_and_two;
 
-Scene<double> rows(MassPattern<double> masses, std::optional<CentralParticle<double>> centre = {},
-                   ParticleIndex times = 1) {
-  return unequal_rows(std::move(centre), std::move(masses), times);
+Scene<double> rows(MassPattern<double> masses, std::optional<CentralParticle<double>> centre = {}) {
+  return unequal_rows(std::move(centre), std::move(masses));
 }
-Scene<double> ring(MassPattern<double> masses, ParticleIndex count = 300) {
-  return gaussian_ring(count, 300, 3, 0.05, 0, std::move(masses));
-}
+Scene<double> ring(MassPattern<double> masses) { return gaussian_ring(300, 300, 3, 0.05, 0, std::move(masses)); }
 
 void expect_sums(const Particles<double>& particles) {
   double mass = 0, momentum = 0, energy = 0, least = INFINITY;
@@ -92,16 +90,6 @@ TEST(MassPattern, OfOnesChangesNoBit) {
     ASSERT_EQ(second.advance(60.), Status::reached);
     expect_same_state(first, second, 60.);
   }
-}
-
-TEST(MassPattern, SegmentsHaveTheBitsOfThePlainLoop) {
-  using Chain = GapChain<double, IndividualMasses<double>>;
-  const std::vector<SegmentsAs> ways{segmentations()[1], segmentations()[3]};
-  const Inelastic<double> law(0.999, 1e-5), elastic(1.);
-  SlabsMade all = expect_same_in_segments<Chain>(rows(three, {}, 3), law, ways, {500., 520.});
-  all += expect_same_in_segments<Chain>(ring(three, 900), law, ways, {2., 10.});
-  all += expect_same_in_segments<Chain>(cold_gas(32, HotPlace::middle), elastic, ways, {1200., 1300.});
-  EXPECT_GT(all.slabs, 20U);
 }
 
 TEST(MassPattern, BadOnesAreRefused) {

@@ -12,7 +12,6 @@
 #include "cradle/core/initial/gas.hpp"
 #include "cradle/core/initial/poisson.hpp"
 #include "cradle/tests/core/fixtures.hpp"
-#include "cradle/tests/core/observe/placed.hpp"
 
 namespace cradle::test::random_places_test {
 

@@ -1,6 +1,7 @@
-// Gravity: one ball against closed forms (its bounces to the last bit: precision/gravity_test.cpp); columns in free
+// Gravity: one ball against closed forms (its bounces to the last bit: precision/wall_gaps_test.cpp); columns in free
 // fall, which are those without gravity to the last bit; frames and mirrors; the account of energy; a gas over a
-// thermal floor; what is refused. (In gaps and positions against a gas in 100 digits: precision/exact_gas_test.cpp.)
+// thermal floor. (In gaps and positions against a gas in 100 digits: precision/exact_gas_test.cpp; what is refused:
+// walls_test.cpp.)
 
 #include <algorithm>
 #include <cmath>
@@ -8,12 +9,10 @@
 
 #include <gtest/gtest.h>
 
-#include "cradle/core/chains/cluster_chain.hpp"
-#include "cradle/core/engine/sticky_gas.hpp"
+#include "cradle/core/observe/batch_means.hpp"
 #include "cradle/core/observe/profile.hpp"
 #include "cradle/tests/core/between_walls.hpp"
 #include "cradle/tests/core/compare.hpp"
-#include "cradle/tests/core/rational.hpp"
 
 namespace cradle::test::gravity_test {
 
@@ -136,43 +135,6 @@ TEST(Gravity, AnElasticColumnKeepsItsEnergy) {
       guards_hold(run, *particles, 400., 1e-6 * (particles->mechanical_energy() + particles->energy_of_fall())));
 }
 
-// Identical elastic particles exchange their velocities: a column of them is that of balls that bounce alone, in order.
-double height_alone(double x, double v, double a, double t) {
-  const double top = x + v * v / (2 * a), fall = std::sqrt(2 * top / a);  // on the floor at odd multiples of it
-  const double phase = std::fmod(t - v / a + fall, 2 * fall), since = (phase < 0 ? phase + 2 * fall : phase) - fall;
-  return top - a * since * since / 2;
-}
-template <class Run> void expect_balls(Run run, const std::vector<double>& x, const std::vector<double>& v, double a) {
-  for (const double t : {3.7, 40.3, 401.9}) {
-    ASSERT_EQ(run.advance(t), Status::reached);
-    std::vector<double> alone;
-    for (std::size_t j = 0; j < x.size(); ++j) alone.push_back(height_alone(x[j], v[j], a, t));
-    std::sort(alone.begin(), alone.end());
-    const auto c = configuration_at(run, t);  // without those above the first that has not collided yet
-    // Every collision rounds a time and a place of its two particles, in units of those here.
-    const double of_particle = 2 * double(run.counts().collisions) / double(x.size()) + 1;
-    const double fastest = std::sqrt(2 * a * 50), tolerance = of_particle * 4 * 0x1p-53 * (t * fastest + 50);
-    for (std::size_t j = 0; j < c.x.size(); ++j) ASSERT_NEAR(c.x[j], alone[j], tolerance) << t;
-  }
-}
-TEST(Gravity, AnElasticColumnIsBallsThatBounceAlone) {
-  std::vector<double> x, v;
-  for (int i = 0; i < 30; ++i)
-    x.push_back(i + 1 + double(bits_of(i, 0, 0x3FF)) / 2048), v.push_back(double(bits_of(i, 20, 0xFF) - 128) / 256);
-  const auto column = between(-0.7, list(x, v), Wall<double>{0.});
-  const Inelastic<double> law(1);
-  expect_balls(mass_run(column, law), x, v, 0.7);
-  expect_balls(position_run(column, law), x, v, 0.7);
-  // From the heights 1, 9, 25, ... they meet on the floor again and again, several at a time.
-  const std::vector<double> squares{0.3, 2.7, 7.5, 14.7, 24.3, 36.3}, at_rest(6, 0.);
-  const auto meeting = between(-0.7, list(squares, at_rest), Wall<double>{0.});
-  expect_balls(mass_run(meeting, law), squares, at_rest, 0.7);
-  auto run = mass_run(meeting, law);
-  run.advance(400);
-  EXPECT_GT(run.chain().account().simultaneous, 0U);
-  EXPECT_EQ(run.chain().account().order_lost, 0U);
-}
-
 // In the frame of a floor that moves uniformly it is at rest: gaps are the same to the last bit.
 TEST(Gravity, AFloorThatMovesUniformly) {
   const Inelastic<double> law(0.95, 1e-2);
@@ -232,34 +194,18 @@ TEST(Gravity, AGasOverAThermalFloor) {
   for (ParticleIndex i = 0; i < n; ++i) x.push_back(double(i) + 0.5), v.push_back(0), m.push_back(i % 3 == 0 ? 2.5 : 1);
   constexpr double temperature = 3, a = -1.5;
   const auto particles = between(a, list<double>(x, v, m), thermal(0., temperature));
-  const auto mean_energy = [&](const auto& energy) {
-    auto run = mass_run(particles, Inelastic<double>(1));
-    return block_mean(64, 400, 4, [&](double t) {
-      EXPECT_EQ(run.advance(t), Status::reached);
-      return energy(run, t);
-    });
-  };
-  const auto kinetic = mean_energy([](const auto& run, double t) { return sample(run, 0., t).energy; });
-  const auto potential =
-      mean_energy([&](const auto& run, double t) { return potential_energy(configuration_at(run, t), *particles, t); });
+  auto run = mass_run(particles, Inelastic<double>(1));
+  EXPECT_EQ(run.advance(6400), Status::reached);  // by which it has forgotten how it began
+  SampledMeans means(2, 25600);
+  for (double t = 6404; !means.complete(); t += 4) {
+    EXPECT_EQ(run.advance(t), Status::reached);
+    means.add({sample(run, 0., t).energy, potential_energy(configuration_at(run, t), *particles, t)});
+  }
+  const auto kinetic = means.means()[0], potential = means.means()[1];
   EXPECT_LT(kinetic.error, 0.5);
   EXPECT_LT(potential.error, 1.5);
   EXPECT_NEAR(kinetic.mean, n * temperature / 2, 4 * kinetic.error);
   EXPECT_NEAR(potential.mean, n * temperature, 4 * potential.error);
-}
-
-TEST(Gravity, WhereItCannotBeIsSaid) {
-  const auto particles = list<double>({1, 2}, {0, 0});
-  EXPECT_THROW(between(-1, gaussian_ring(10, 10)), std::invalid_argument);
-  EXPECT_THROW(between(-1, particles, Wall<double>{0., 0., 0.}), std::invalid_argument);
-  EXPECT_NO_THROW(between(1, particles, Wall<double>{0., 0., 0.}));
-  EXPECT_THROW(between(NAN, particles), std::invalid_argument);
-  const auto exact = between<Rational>(-1, list<Rational>({1, 2}, {0, 0}));  // which has no square roots
-  EXPECT_THROW(GapChain<Rational>(exact, 0), std::invalid_argument);
-  EXPECT_THROW(PositionChain<Rational>(exact, 0), std::invalid_argument);
-  EXPECT_THROW(ClusterChain<double>(between(-1, particles), 0.), std::invalid_argument);
-  EXPECT_THROW(StickyGas<double>(between(-1, particles), 0.), std::invalid_argument);
-  EXPECT_NO_THROW(gap_run<double>(between(0, particles), Inelastic<double>(1)));
 }
 
 }  // namespace cradle::test::gravity_test

@@ -1,6 +1,6 @@
 // Piles: particles that come to rest on one another on a floor. When they do, against sums of geometric series; a pile
-// that is let go; laws with a cut-off or a contact time; what is refused. (Motions and accounts against a gas in 100
-// digits: precision/exact_gas_test.cpp.)
+// that is let go; laws with a cut-off or a contact time. (Motions and accounts against a gas in 100 digits:
+// precision/exact_gas_test.cpp; what is refused: walls_test.cpp.)
 
 #include <cmath>
 #include <numbers>
@@ -39,19 +39,6 @@ TEST(Resting, TwoBallsAgainstGeometricSeries) {
   for (const double zero : {c.x[0], c.x[1], c.v[0], c.v[1], c.gap[0], c.closing_speed[0]}) EXPECT_NEAR(zero, 0, 1e-14);
   EXPECT_NEAR(run.energy_lost(), 8.5, 1e-14);
   EXPECT_NEAR(sample(run, 0., 100.).walls[0].momentum.value(), 200, 1e-11);  // both weights for that time
-}
-
-// A particle that meets the pile below its rest speed leaves it as it is: the wall has the impulse and what is lost.
-TEST(Resting, ThePileIsTheWall) {
-  const auto particles = between(-1, list<double>({0.5, 8}, {0, 0}, {1, 3}), wall(0, nullptr, 0.5, 0, 5));
-  auto run = mass_run(particles, Inelastic<double>(0.5));
-  EXPECT_EQ(run.advance(4.), Status::reached);
-  EXPECT_EQ(run.counts().collisions, 2U);
-  const auto tally = sample(run, 0., 4.).walls[0];
-  EXPECT_EQ(tally.collisions, 2U);
-  EXPECT_EQ(tally.dissipated.value(), 0.5 + 24);
-  EXPECT_EQ(tally.momentum.value(), 1 + 3 + 12);  // at t = 1, the weight until t = 4, and then
-  EXPECT_EQ(run.account().simultaneous, 0U);
 }
 
 // One particle or three are let go where A omega^2 sin(omega t) = g, at the speed of the floor, and fly as one: the
@@ -105,16 +92,6 @@ TEST(Resting, AColumnComesToRest) {
     at_rest(Inelastic<double>(0.8, 0.02), of_floor);
     at_rest(ContactTime<double>(Inelastic<double>(0.8), 0.01), of_floor);
   }
-}
-
-TEST(Resting, WhereTheyCannotRestIsSaid) {
-  const auto two = list<double>({1, 2}, {0, 0});
-  const auto sine = shaken(Shape::sine, 0.25);
-  EXPECT_NO_THROW(between(-1, two, wall(0, sine, 0.5, 0, 0.1), wall(3, nullptr, 1)));
-  EXPECT_NO_THROW(between(-1, two, wall(0, nullptr, 0.5, 0, 0.1), wall(3, sine, 1)));
-  EXPECT_THROW(between(-1, two, wall(0, nullptr, 0.5, 0, 0.1), wall(3, nullptr, 1, 0, 0.1)), std::invalid_argument);
-  EXPECT_THROW(between(-1, two, wall(0, sine, 0.5, 0, 0.1), wall(3, sine, 1)), std::invalid_argument);
-  EXPECT_NO_THROW(between(-1, list<double>({1}, {0}), wall(0, sine, 0.5, 0, 0.1), wall(3, sine, 1, 0, 0.1)));
 }
 
 }  // namespace cradle::test::resting_test

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "cradle/core/chains/cluster_chain.hpp"
-#include "cradle/core/observe/clusters.hpp"
+#include "cradle/core/observe/scenario.hpp"
 #include "cradle/tests/core/fixtures.hpp"
 
 namespace cradle::test::wet_test {
@@ -50,29 +50,6 @@ TEST(WetLaw, LosesTheSameEnergyAtAnyMass) {
     const double before = heavy * (u + w) * (u + w) + u * u, after = heavy * left * left + right * right;
     EXPECT_NEAR((before - after) / 2, 0.05, 4e-16 * before) << heavy;
     EXPECT_NEAR(heavy * (o.to_left), o.to_right, 4e-16 * o.to_right) << heavy;
-  }
-}
-
-// Newton's cradle (paper, Fig. 5): one particle runs into a resting cluster of k; the momentum goes through it and one
-// particle comes out on the far side. Its speed v' follows from momentum and energy alone:
-// v = v' + k V, v^2 = v'^2 + k V^2 + 2 E, with k V = J: V = 2E/(k (w + w')), w'^2 = w^2 - 2 E (1 + 1/k), w = v.
-TEST(WetLaw, NewtonsCradle) {
-  constexpr double v = 1, loss = 0.05;
-  for (const int k : {1, 2, 5, 1000}) {
-    SCOPED_TRACE(k);
-    Simulation run(Wet<double>{loss}, ClusterChain<double>{list<double>({-4, 0}, {v, 0}, {1.0, double(k)}), 0.0});
-    ASSERT_EQ(run.advance(10.0), Status::reached);
-    EXPECT_EQ(run.counts().collisions, 1U);
-    EXPECT_EQ(run.counts().merges, 0U);
-    const auto c = run.configuration(10.0);
-    const double after = std::sqrt(v * v - 2 * loss * (1 + 1.0 / k)), cluster = 2 * loss / (k * (v + after));
-    ASSERT_EQ(c.m, (std::vector<double>{double(k), 1}));  // the single one is on the far side
-    EXPECT_EQ(c.index, (std::vector<ParticleIndex>{1, 0}));
-    EXPECT_NEAR(c.v[0], cluster, 4e-16);
-    EXPECT_NEAR(c.v[1], cluster + after, 4e-16);
-    EXPECT_NEAR(c.x[0], 6 * cluster, 1e-14);  // they met at x = 0, t = 4
-    EXPECT_NEAR(c.x[1], 6 * (cluster + after), 1e-14);
-    EXPECT_NEAR(c.v[1] * c.v[1] + k * c.v[0] * c.v[0], v * v - 2 * loss, 1e-15);
   }
 }
 

@@ -6,9 +6,8 @@
 
 #include <cmath>
 
-#include "cradle/core/initial/list.hpp"
-#include "cradle/tests/core/observe/placed.hpp"
-#include "cradle/tests/core/saved.hpp"
+#include "cradle/tests/core/compare.hpp"
+#include "cradle/tests/core/fixtures.hpp"
 
 namespace cradle::test::averages_test {
 

@@ -6,9 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "cradle/tests/core/between_walls.hpp"
-#include "cradle/tests/core/observe/placed.hpp"
-#include "cradle/tests/core/saved.hpp"
-#include "cradle/tests/core/strict_real.hpp"
+#include "cradle/tests/core/compare.hpp"
 
 namespace cradle::test::correlations_test {
 
@@ -206,18 +204,6 @@ TEST(TaggedParticles, FallWhetherAFrontHasReachedThemOrNot) {
   const auto found = correlator.correlations();
   EXPECT_DOUBLE_EQ(found[1].displacement.mean, ways);  // 32.3
   EXPECT_DOUBLE_EQ(found[0].velocity.mean, speeds);    // 34.05
-}
-
-TEST(TaggedParticles, NeedOnlyWhatARealNumberHas) {
-  const auto number = [](double x) { return StrictReal::of(x); };
-  const List<StrictReal> particles({number(0), number(1)}, {number(1), number(-1)}, {}, number(4));
-  TaggedParticles<StrictReal> tagged(particles, 1);
-  Configuration<StrictReal> c;
-  c.index = {1, 0}, c.x = {number(2), number(3)}, c.v = {number(1), number(-1)}, c.m = {number(1), number(1)}, c.to = 1;
-  tagged.find(c, number(2));
-  // They met at 1/2; at 3 is an image of particle 0, which is at -1.
-  EXPECT_EQ(tagged.displacement(), (std::vector<double>{-1, 1}));
-  EXPECT_EQ(tagged.velocity(), (std::vector<double>{-1, 1}));
 }
 
 }  // namespace cradle::test::correlations_test

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "cradle/tests/core/observe/placed.hpp"
+#include "cradle/tests/core/fixtures.hpp"
 
 namespace cradle::test::dense_core_test {
 

@@ -117,8 +117,7 @@ TEST(CollisionHistograms, AreTheSameInSegmentsAndFromASavedState) {
       Histogram first(3., 27., bins, scene->count(), true), found = first;
       run.advance(13.3, segments, into(first, run));
       first.made(run.counts());
-      SavedState state = SavedState::of(first);
-      load(state, found);
+      restore(found, first);
       run.advance(30, segments, into(found, run));
       found.made(run.counts());
       slabs += segments.statistics().slabs;
@@ -133,10 +132,7 @@ TEST(CollisionHistograms, RefuseStatesThatCannotBe) {
   Histogram histogram(0., 9., bins, 100, true), of_fewer(0., 9., bins, 50, true),
       other(0., 9., OctaveBins::of_numbers(1, 2), 100, true);
   run.advance(9, into(histogram, run));
-  for (Histogram* wrong : {&of_fewer, &other}) {
-    SavedState state = SavedState::of(histogram);
-    EXPECT_THROW(load(state, *wrong), std::invalid_argument);
-  }
+  for (Histogram* wrong : {&of_fewer, &other}) EXPECT_THROW(restore(*wrong, histogram), std::invalid_argument);
 }
 
 TEST(Clusters, AreCountedByHand) {

@@ -10,7 +10,6 @@
 #include "cradle/core/observe/profile.hpp"
 #include "cradle/core/observe/zone.hpp"
 #include "cradle/tests/core/fixtures.hpp"
-#include "cradle/tests/core/observe/placed.hpp"
 
 namespace cradle::test::profile_test {
 

@@ -9,9 +9,8 @@
 #include <random>
 
 #include "cradle/core/observe/batch_means.hpp"
+#include "cradle/tests/core/compare.hpp"
 #include "cradle/tests/core/fixtures.hpp"
-#include "cradle/tests/core/observe/placed.hpp"
-#include "cradle/tests/core/saved.hpp"
 
 namespace cradle::test::structure_test {
 

@@ -4,6 +4,7 @@
 // every cut.
 #include <gtest/gtest.h>
 
+#include "cradle/tests/core/between_walls.hpp"
 #include "cradle/tests/core/segmented.hpp"
 
 namespace cradle::test::segments_test {
@@ -96,12 +97,31 @@ TYPED_TEST(Cells, MergersAtTheSameTime) {
   EXPECT_GT(made.again, 100U);
 }
 
+// ---- hot walls and walls that move, and masses that repeat where particles come in
+
+using Gaps = GapChain<double>;
+using Masses = GapChain<double, IndividualMasses<double>>;
+
+TEST(Segments, BetweenWalls) {
+  const Inelastic<double> law(0.98, 1e-3), soft(0.98, 0.1);
+  SlabsMade made = in_all_segmentations<Gaps>(gas_between_walls<double>(), law, {8, 9, 40});
+  made += in_all_segmentations<Masses>(gas_between_walls<double>(true), law, {9});
+  made += in_all_segmentations<Gaps>(between(0, uniform_rows(1600), Wall<double>{-805., .8}), soft, {350});
+  EXPECT_GT(made.slabs, 200U);
+}
+TEST(Segments, OfMassesThatRepeat) {
+  const Inelastic<double> law(0.999, 1e-5), elastic(1.);
+  SlabsMade made = in_all_segmentations<Masses>(unequal_rows<double>({}, three_masses, 3), law, {500, 520});
+  made += in_all_segmentations<Masses>(cold_gas(32, HotPlace::middle), elastic, {1200, 1300});
+  EXPECT_GT(made.slabs, 20U);
+}
+
 // ---- the paper's shock through its collapse: every collision beyond t = 6500 in a core of a few dozen particles
 
 TEST(SlowSegments, Figure2ThroughItsCollapse) {
   const Inelastic<double> law(0.999, 1e-5);
-  const auto made = expect_same_in_segments<GapChain<double>>(
-      rshock<double>(8000), law, {{{.gaps = 1500, .ghosts = 48}, 2, false}}, std::vector{6000., 6500., 6550.});
+  const auto made = expect_same_in_segments<Gaps>(rshock<double>(8000), law, {{{.gaps = 1500, .ghosts = 48}, 2, false}},
+                                                  std::vector{6000., 6500., 6550.});
   EXPECT_GT(made.slabs, 1000U);
 }
 

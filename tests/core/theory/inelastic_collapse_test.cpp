@@ -9,7 +9,7 @@
 
 #include "cradle/core/theory/inelastic_shock.hpp"
 #include "cradle/tests/core/digits.hpp"
-#include "cradle/tests/core/three_collapses.hpp"
+#include "cradle/tests/core/fixtures.hpp"
 
 namespace cradle::test::inelastic_collapse_test {
 

@@ -164,6 +164,22 @@ TEST(InelasticFront, DoublesLoseNothingAsRestitutionTendsToOne) {
   }
 }
 
+template <class T> void expect_own_precision() {
+  const InelasticShock<T> shock = paper_shock(T(T(999) / T(1000)));
+  const auto wide = paper_shock(Wide(shock.restitution));
+  const Wide few = 30 * Wide(std::numeric_limits<T>::epsilon());
+  expect_close(*maximal_front(shock), *maximal_front(wide), few, "x_max");
+  expect_close(front_displacement(shock, T(700)), front_displacement(wide, Wide(700)), few, "(5)");
+  expect_close(energy(shock, T(700)), energy(wide, Wide(700)), few, "(7)");
+  expect_close(*collapse_onset_time(shock), *collapse_onset_time(wide), few, "onset");
+  expect_close(collapse_limit<T>(3), collapse_limit<Wide>(3), few, "7 - 4 sqrt 3");
+}
+TEST(InelasticFront, AgreesWithWideToThePrecisionOfAnyBuiltInType) {
+  expect_own_precision<float>();
+  expect_own_precision<double>();
+  expect_own_precision<long double>();
+}
+
 // ---- profiles, slope, energy ----
 
 TEST(InelasticProfiles, HoldTheParticlesThatHaveEntered) {

@@ -15,6 +15,8 @@
 #include <limits>
 #include <utility>
 
+#include "cradle/core/theory/wet_zone.hpp"
+
 namespace cradle::test::wet_clusters_test {
 
 using namespace cradle::theory;

@@ -1,5 +1,5 @@
 // The numbers in files of ensembles: statistics compared with those of single runs, how replicas ended, replicas that
-// collapse or fail.
+// collapse. (Those that fail, what every replica records: tests/tools/outputs.txt.)
 
 #include <algorithm>
 #include <cmath>
@@ -88,12 +88,6 @@ TEST_P(StatisticsOf, ReplicasAreThoseOfTheRunsOneByOne) {
 INSTANTIATE_TEST_SUITE_P(Scenes, StatisticsOf, testing::Values("shock", "wet", "falling"),
                          [](const auto& parameter) { return std::string(parameter.param); });
 
-TEST_F(Ensembles, SeedIsPartOfTheScene) {
-  run("ensemble shock.toml --replicas 3 --seed 1 -o a.h5");
-  run("ensemble shock.toml --replicas 3 --seed 2 -o b.h5");
-  EXPECT_NE(numbers(read("a.h5"), "replicas", "collisions"), numbers(read("b.h5"), "replicas", "collisions"));
-}
-
 TEST_F(Ensembles, CollapseIsAnOutcome) {
   run("ensemble collapse.toml --replicas 40 -o c.h5");
   const Result all = read("c.h5");
@@ -132,46 +126,6 @@ TEST_F(Ensembles, ValuesAreCountedInBinsWhereRequested) {
   EXPECT_NEAR(numbers(all, "ensemble/spread/series/energy", "quantile_50").back(), energies[25], 0.01);
   EXPECT_EQ(shell("cradle ensemble shock.toml --replicas 60 -o a.h5").status, 2)
       << "without the bins: another ensemble";
-}
-
-TEST_F(Ensembles, FailedReplicasAreListedAndHarmNoOther) {
-  for (const std::string threads : {"1", "2"}) {
-    const Printed end =
-        shell("cradle ensemble failing.toml --replicas 23 --threads " + threads + " -o " + threads + ".h5", 5);
-    EXPECT_TRUE(has(end.err, "replica 9 failed: "));
-    EXPECT_TRUE(has(end.out, "20 reached the end, 3 failed"));
-  }
-  expect_same("1.h5", "2.h5");
-  const Result failed = read("1.h5");
-  EXPECT_EQ(numbers(failed, "replicas/failed", "index"), (std::vector<double>{1, 9, 17}));
-  const auto& messages = attribute<std::string>(failed.find("replicas/failed")->attributes, "messages", "");
-  EXPECT_EQ(std::count(messages.begin(), messages.end(), '\n'), 2) << messages;
-  EXPECT_TRUE(begins(messages, "replica 1: "));
-
-  // The others: what they give without those that failed.
-  run("ensemble failing.toml --replicas 1 -o others.h5");
-  for (const auto* range : {"--first 2 --replicas 7", "--first 10 --replicas 7", "--first 18 --replicas 5"}) {
-    run(std::string("ensemble failing.toml -o part.h5 ") + range);
-    run("merge others.h5 part.h5 -o others.h5");
-    std::filesystem::remove(folder / "part.h5");
-  }
-  const Result others = read("others.h5");
-  for (const auto* statistic : {"mean", "sem", "min", "max"})
-    EXPECT_EQ(numbers(failed, "ensemble/series/energy", statistic),
-              numbers(others, "ensemble/series/energy", statistic));
-
-  // They are not run again, and stay listed when the file grows.
-  const Printed more = shell("cradle ensemble failing.toml --replicas 26 -o 1.h5", 5);
-  EXPECT_TRUE(has(more.out, "3 of them now"));
-  EXPECT_TRUE(has(more.err, "replica 9 failed: "));
-  const Result grown = read("1.h5");
-  EXPECT_EQ(attribute<std::string>(grown.find("replicas/failed")->attributes, "messages", ""), messages);
-}
-
-TEST_F(Ensembles, AllReplicasMayFail) {
-  run("ensemble failing.toml --set walls.left.temperature=1e6 --replicas 3 -o none.h5", 5);
-  EXPECT_TRUE(std::isnan(numbers(read("none.h5"), "ensemble/series/energy", "mean")[0]));
-  run("ensemble failing.toml --set walls.left.temperature=1e6 --replicas 4 -o none.h5", 5);
 }
 
 TEST_F(Ensembles, AMessageOfSeveralLinesIsOneLineOfTheFile) {

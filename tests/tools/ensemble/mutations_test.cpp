@@ -7,9 +7,9 @@
 #include <map>
 
 #include "cradle/tests/tools/ensemble/ensembles.hpp"
-#include "cradle/tests/tools/mutator.hpp"
+#include "cradle/tests/tools/faults.hpp"
 #include "cradle/tests/tools/result/result_files.hpp"
-#include "cradle/tools/commands/listing.hpp"
+#include "cradle/tools/commands/commands.hpp"
 
 namespace cradle::tests::mutations_test {
 

@@ -35,6 +35,13 @@ TEST_F(Ensembles, KilledAndContinuedIsTheSameAsInOneGo) {
   EXPECT_FALSE(has(go_on.out, all + " of them now")) << "not all of them again";
 }
 
+// The first kill leaves records of replicas, which the second call rewrites as statistics and tables of replicas.
+TEST_F(Ensembles, KilledAndContinuedWithEveryReplicaToo) {
+  write("shock.toml", std::string(shock) + "every_replica = true\n");
+  for (int kill = 0; kill < 2; ++kill) shell(until_journalled("killed.h5", "KILL"), 137);
+  expect_continued("killed.h5");
+}
+
 TEST_F(Ensembles, AJournalSaysWhatItHoldsAndIsNoOtherScenes) {
   shell(until_journalled("a.h5", "KILL"), 137);
   const Printed journal = shell("cradle info a.h5.part", 0);

@@ -1,6 +1,6 @@
-// Sweeps: the points that texts describe, the texts that are refused, and the table of a small sweep compared with runs
-// made one by one.
-#include "cradle/tools/ensemble/sweep.hpp"
+// Sweeps: the points that texts describe, and the table of a small sweep compared with runs made one by one. (Texts
+// that are refused: tests/tools/messages.txt.)
+#include "cradle/tools/ensemble/study.hpp"
 
 #include <cmath>
 
@@ -43,14 +43,6 @@ TEST(SweepPoints, CombineOrCutOrStandOneByOne) {
   const auto given = sweep_points(of({}, false, {"law.type=wet law.loss=0.3", "law.type=sticky"}));
   ASSERT_EQ(given.size(), 2U);
   EXPECT_EQ(given[0], (SweepPoint{"law.type=wet", "law.loss=0.3"}));
-}
-
-TEST(SweepPoints, RefuseWhatTheyCannotRead) {
-  for (const char* text : {"law.loss", "=1", "law.loss=", "law.loss=1:2", "law.loss=1:2:1", "law.loss=1:2:2.5",
-                           "law.loss=0:2:3:log", "law.loss=a:b:3", "law.loss=1:2:3:lin", "law.loss=nan:2:3"})
-    EXPECT_THROW(sweep_points(of({text})), Error) << text;
-  EXPECT_THROW(sweep_points(of({})), Error);
-  EXPECT_THROW(sweep_points(of({}, false, {"law.loss"})), Error);
 }
 
 // Found by fuzzing: with a million for a thousand, many keys of so many values each were written out before they were

@@ -11,7 +11,7 @@ from unittest import mock
 
 import cradle
 import small
-from cradle import program, progress
+from cradle import program
 from cradle.scene import parse_toml, scene_text
 
 
@@ -122,12 +122,12 @@ class Progress(small.Case):
     def test_a_terminal_is_left_as_it_was(self):
         terminal = io.StringIO()
         terminal.isatty = lambda: True
-        with contextlib.redirect_stderr(terminal), progress.shown(None) as show:
+        with contextlib.redirect_stderr(terminal), program.shown(None) as show:
             show(0.5, "half")
         self.assertEqual(terminal.getvalue(), "\r\033[K[" + "#" * 15 + " " * 15 + "] half\r\033[K")
 
     def test_nothing_is_shown_without_a_terminal(self):
-        with progress.shown(False) as show:
+        with program.shown(False) as show:
             self.assertIsNone(show)
 
     def test_the_program_ends_with_the_python_that_called_it(self):

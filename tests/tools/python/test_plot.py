@@ -11,7 +11,7 @@ import numpy as np
 import cradle
 import small
 from cradle import program
-from cradle.drawing import blast, correlations, domino, finish, particles, splash, style
+from cradle.drawing import cold, measured, particles, pictures, style
 
 
 class Pictures(small.Case):
@@ -43,7 +43,7 @@ class Pictures(small.Case):
             self.assertEqual(list(inspect.signature(function).parameters), ["result", "axes", "theory"])
 
     def test_the_exact_displacement_is_that_of_jepsen(self):
-        displacement, exact = correlations.displacement, correlations.exact
+        displacement, exact = measured.displacement, measured.exact_correlations
         for time, square in ((1, 0.5297), (3, 2.170), (5, 3.787), (10, 7.788), (20, 15.77)):
             self.assertAlmostEqual(displacement(time) / square, 1, delta=2e-4)
         self.assertAlmostEqual(displacement(1e-4), 1e-8, delta=2e-12)
@@ -56,21 +56,21 @@ class Pictures(small.Case):
             self.assertIsNone(exact(result, [1.0]))
 
     def test_the_blast_has_the_energy_and_the_mass_that_it_should(self):
-        xi, density, velocity, temperature = blast.solution(20000)
+        xi, density, velocity, temperature = cold.solution(20000)
         np.testing.assert_allclose((density[-1], velocity[-1], temperature[-1]), (2, 1 / 2, 1 / 4), rtol=1e-12)
 
         def integral(values):  # the energy density is finite at the centre
             return values[0] * xi[0] + np.diff(xi) @ (values[1:] + values[:-1]) / 2
-        self.assertAlmostEqual(9 / 4 / integral(density * (velocity ** 2 + temperature)), blast.AMPLITUDE, delta=1e-5)
+        self.assertAlmostEqual(9 / 4 / integral(density * (velocity ** 2 + temperature)), cold.AMPLITUDE, delta=1e-5)
         self.assertAlmostEqual(integral(density), 1, delta=1e-5)
 
     def test_dominoes_and_splashes_have_the_published_numbers(self):
         for k, ratio, delay in ((1, 1, 0), (2, 4.236068, 0.381966), (3, 9.097835, 0.445042), (4, 15.581719, 0.467911)):
             row = SimpleNamespace(scene={"initial": {"masses": [ratio, 1]}})
-            self.assertEqual(domino.order(row), k)
-            self.assertAlmostEqual(float(domino.delay_of(row)), delay, delta=5e-7)
-        self.assertEqual(domino.order(SimpleNamespace(scene={"initial": {"masses": [2, 1]}})), 0)
-        self.assertAlmostEqual(splash.ENERGY, 3 * splash.FRONT - 2, delta=2e-6)
+            self.assertEqual(cold.order(row), k)
+            self.assertAlmostEqual(float(cold.delay_of(row)), delay, delta=5e-7)
+        self.assertEqual(cold.order(SimpleNamespace(scene={"initial": {"masses": [2, 1]}})), 0)
+        self.assertAlmostEqual(cold.ENERGY, 3 * cold.FRONT - 2, delta=2e-6)
 
     def test_a_ring_that_loses_no_energy_is_not_beside_the_sticky_gas(self):
         self.assertIn("energy", cradle.plot.names(small.tagged()))
@@ -143,7 +143,7 @@ class Pictures(small.Case):
         for low, high in ((2, 5), (0.9, 1.3), (3, 40), (1.01, 1.02), (1, 1e9)):
             figure, axes = plt.subplots()
             axes.set(yscale="log", ylim=(low, high))
-            finish.label_ticks(axes.yaxis)
+            pictures.label_ticks(axes.yaxis)
             figure.canvas.draw()
             labels = [label.get_text() for label, place in zip(axes.get_yticklabels(), axes.get_yticks())
                       if low <= place <= high and label.get_text()]

@@ -2,7 +2,7 @@
 // users or older versions have written are read too; damaged ones are not.
 
 #include "cradle/tests/tools/result/result_files.hpp"
-#include "cradle/tools/commands/listing.hpp"
+#include "cradle/tools/commands/commands.hpp"
 
 namespace cradle::tests::result_files_test {
 

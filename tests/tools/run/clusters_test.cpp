@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "cradle/core/theory/cluster_force.hpp"
+#include "cradle/core/theory/wet_zone.hpp"
 #include "cradle/tests/tools/program.hpp"
 
 namespace cradle::tests::clusters_test {

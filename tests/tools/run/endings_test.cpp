@@ -101,7 +101,7 @@ TEST_F(Endings, NoMachineIsBlamedForWhatPositionsDoNotResolve) {
   EXPECT_TRUE(has(end.err, "run.coordinates = \"gaps\"")) << end.err;
   tools::Run positions;
   positions.coordinates = Coordinates::absolute;
-  ReportedAccount unresolved;
+  Account<Number> unresolved;
   unresolved.unresolved = 1;
   const ReportedGuard energy{Guard::energy, 1, 0, -1, {}}, wall{Guard::wall, -1, 0, 0, {}};
   EXPECT_FALSE(has(guard_message(energy, unresolved, positions), "at fault"));
@@ -117,7 +117,7 @@ struct Reached {
     if (at != std::string::npos) std::sscanf(&interrupted.err[at], "interrupted: t = %lf, %lf", &time, &collisions);
   }
 };
-// With 48 particles and less so many collisions may follow each other at one time (standstill.hpp).
+// With 48 particles and less so many collisions may follow each other at one time (pacing.hpp).
 constexpr double most_at_one_time = (1 << 20) + 4096. * 48 * 48;
 
 // A scene of any kind. (The engine is specified bit by bit, and so are these numbers.)
@@ -183,24 +183,6 @@ std::string random_scene(std::uint64_t seed) {
       text += "rest_speed = 1e-4\n", rests = true;
   }
   return text;
-}
-
-// The time up to which collisions are certain is not after one that should or should not have come.
-TEST_F(Endings, CollisionsAcrossTheEndAreUncertainFromTheLastOneOn) {
-  const auto uncertain_from = [&](const std::string& scene, const std::string& options = "") {
-    return tools::attribute<double>(result_of(scene, options).attributes, "uncertain_from", "");
-  };
-  // Makes 3 collisions; the fourth is at 1.2e21.
-  EXPECT_LT(uncertain_from("law = {type = 'inelastic', restitution = 0.9999999999}\n"
-                           "run = {start = -7.25, until = 1.8e21}\n"
-                           "initial = {type = 'list', x = [0, 2, 3.5, 5, 6], v = [0.5, 1, 1, 2, 0.5]}\n"),
-            1.2e21);
-  // Makes none; the first is at 1.
-  const std::string pair = "law = {type = 'inelastic', restitution = 0.5}\nrun.until = 0.9999999999999999\n"
-                           "initial = {type = 'list', x = [0, 1], v = [1, 0]}\n";
-  EXPECT_EQ(uncertain_from(pair), 0);
-  // The double nearest to 0.1 is later than that.
-  EXPECT_EQ(uncertain_from(pair, "--set run.start=0.1 --set run.until=1.0999999999999999"), std::nextafter(0.1, 0));
 }
 
 TEST_F(Endings, NoRunStaysAtOneTime) {

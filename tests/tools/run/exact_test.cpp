@@ -138,8 +138,4 @@ TEST_F(Exact, TimesAreTheDecimalsOfTheScene) {
   in_wide_types(tenths, expect_multiples_of_a_tenth);
 }
 
-TEST_F(Exact, DoublesNeedNone) {
-  for (const Group& group : result_of(shock).groups) EXPECT_FALSE(group.name.starts_with("exact")) << group.name;
-}
-
 }  // namespace cradle::tests::exact_test

@@ -1,6 +1,6 @@
 // The program from scene to file: the Fig. 2 shock from a list of particles against counts of an independent
-// event-driven N-particle program (identical in double, binary128 and 100 digits), the three-particle collapse against
-// its closed form. (That two runs give the same bytes: tests/tools/run/outputs.txt.)
+// event-driven N-particle program (identical in double, binary128 and 100 digits). (The three-particle collapse against
+// its closed form, and that two runs give the same bytes: tests/tools/run/outputs.txt.)
 
 #include <cmath>
 
@@ -32,38 +32,6 @@ TEST_F(Run, ListOfTheFig2ShockGivesThePublishedCounts) {
     for (std::size_t k = 0; k < 4; ++k)
       EXPECT_NEAR(numbers(result, "series", "energy")[k], energies[k], 1e-12 * 1000) << k;
   }
-}
-
-TEST_F(Run, CollapseIsFollowedToUnderflowAndItsTimeReported) {
-  const Printed run = shell("cradle run collapse3", 3);
-  const auto at = run.out.find("t_c = ");
-  ASSERT_NE(at, std::string::npos) << run.out;
-  EXPECT_NEAR(std::stod(run.out.substr(at + 6)), 12.0 / 7.0, 1e-15);
-  const auto result = read("collapse3.h5");
-  const auto& collapse = result.find("collapse")->attributes;
-  EXPECT_LT(tools::attribute<double>(collapse, "gap", ""), 1e-290);
-  EXPECT_GT(tools::attribute<double>(collapse, "gap", ""), 0.0);
-  // Intervals at one gap shrink by (lam-/lam+)^2 = (5/16)^2.
-  EXPECT_NEAR(tools::attribute<double>(collapse, "ratio", ""), 25.0 / 256.0, 1e-14);
-}
-
-TEST_F(Run, CollapseStopsOnceItsTimeIsSettled) {
-  const Printed run = shell("cradle run collapse3 --set run.stop_gap= --quiet", 3);
-  const auto result = read("collapse3.h5");
-  const auto& collapse = result.find("collapse")->attributes;
-  EXPECT_NEAR(tools::attribute<double>(collapse, "time", ""), 12.0 / 7.0, 1e-15);
-  EXPECT_GT(tools::attribute<double>(collapse, "gap", ""), 1e-30);
-  EXPECT_TRUE(has(run.out, "t_c = ")) << "the report is printed under --quiet too";
-}
-
-TEST_F(Run, EventsAreEveryCollisionInOrder) {
-  shell("cradle run collapse3 --quiet", 3);
-  const auto result = read("collapse3.h5");
-  for (const auto& column : result.find("events")->columns) EXPECT_EQ(column.rows(), 322U) << column.name;
-  const auto intervals = numbers(result, "events", "interval");
-  // Closed form: intervals shrink by lam-/lam+ = 5/16 per collision, resolved down to 1e-160.
-  for (std::size_t n = 20; n < intervals.size(); ++n) EXPECT_NEAR(intervals[n] / intervals[n - 1], 0.3125, 1e-6) << n;
-  EXPECT_LT(intervals.back(), 1e-160);
 }
 
 // What nothing measures is not written: not as 0 either.

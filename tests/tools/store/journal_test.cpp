@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
+#include "cradle/tests/tools/faults.hpp"
 #include "cradle/tests/tools/program.hpp"
-#include "cradle/tests/tools/result/small_files.hpp"
 
 namespace cradle::tests::journal_test {
 

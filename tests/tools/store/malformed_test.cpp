@@ -6,11 +6,10 @@
 
 #include <cerrno>
 
-#include "cradle/tests/tools/mutator.hpp"
+#include "cradle/tests/tools/faults.hpp"
 #include "cradle/tests/tools/store/stopping.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
 #include "cradle/tools/support/bytes.hpp"
-#include "cradle/tools/support/checksum.hpp"
 
 namespace malformed_test {
 

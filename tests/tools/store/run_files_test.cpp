@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <cstring>
 
+#include "cradle/tests/tools/faults.hpp"
 #include "cradle/tests/tools/program.hpp"
-#include "cradle/tests/tools/result/small_files.hpp"
 #include "cradle/tools/result/difference.hpp"
 #include "cradle/tools/result/growing_tables.hpp"
 #include "cradle/tools/result/writer.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
 #include "cradle/tools/store/run_files.hpp"
-#include "cradle/tools/support/checksum.hpp"
+#include "cradle/tools/support/bytes.hpp"
 #include "cradle/tools/support/version.hpp"
 
 namespace run_files_test {

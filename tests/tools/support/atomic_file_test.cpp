@@ -6,8 +6,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "cradle/tests/tools/faults.hpp"
 #include "cradle/tests/tools/program.hpp"
-#include "cradle/tests/tools/result/small_files.hpp"
 
 namespace cradle::tests::atomic_file_test {
 

@@ -11,8 +11,6 @@
 #include <variant>
 #include <vector>
 
-#include "cradle/tools/support/checksum.hpp"
-
 namespace cradle::tests::bytes_test {
 
 TEST(Checksum, IsTheCrc64OfXz) {

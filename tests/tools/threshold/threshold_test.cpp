@@ -4,10 +4,8 @@
 #include <random>
 
 #include "cradle/tests/tools/program.hpp"
-#include "cradle/tools/run/run.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
-#include "cradle/tools/threshold/bracket.hpp"
-#include "cradle/tools/threshold/exact_collapse.hpp"
+#include "cradle/tools/threshold/threshold.hpp"
 
 namespace cradle::tests::threshold_test {
 

@@ -19,7 +19,7 @@ from .errors import Error, missing
 
 if TYPE_CHECKING:
     from .commands import certify, ensemble, resume, run, sweep, threshold, trust
-    from .page import report
+    from .page.page import report
     from .plot import Pictures
     from .queries import check, diff, export, new, scenes, theory
     from .result import Result, open
@@ -32,7 +32,7 @@ __version__ = "0.1.0"  # the program's
 
 _WHERE = {name: module for module, names in {
     "commands": ("certify", "ensemble", "resume", "run", "sweep", "threshold", "trust"),
-    "page": ("report",), "plot": ("plot",), "queries": ("check", "diff", "export", "new", "scenes", "theory"),
+    "page.page": ("report",), "plot": ("plot",), "queries": ("check", "diff", "export", "new", "scenes", "theory"),
     "result": ("Result", "open"), "simulation": ("Collision", "Simulation"),
     "tables": ("Column", "Table", "Tables")}.items() for name in names}
 __all__ = ["Error", *(name for name in _WHERE if name != "open")]  # `from cradle import *` keeps Python's open

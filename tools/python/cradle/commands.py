@@ -6,13 +6,13 @@ import os
 import re
 import tempfile
 import warnings
-from builtins import open as builtins_open  # hidden by ours
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from pathlib import Path
 from typing import Any, Union
 
 from . import program
 from .errors import BAD_INPUT, COLLAPSE, DONE, LOST, Error, in_python, path_of
-from .progress import Show, shown
+from .program import Show
 from .result import Result, open
 from .scene import scene_text, value_text
 
@@ -47,8 +47,7 @@ def ensemble(scene: Scene, replicas: int, set: Settings = None, *, first: int = 
     spread: "NAME=FROM:TO:BINS", quantities of the series whose values are counted in bins. Other arguments as in run().
     Raises Error; if replicas failed (5) its `result` has the others.
     """
-    options = ["--replicas", str(replicas), "--first", str(first)]
-    options += [word for text in spread for word in ("--spread", text)]
+    options = ["--replicas", replicas, "--first", first, *repeated("--spread", spread)]
     return compute("ensemble", "-ensemble.h5", scene, set, options, **common)
 
 
@@ -60,9 +59,9 @@ def sweep(scene: Scene, vary: Settings = None, set: Settings = None, *, cuts: bo
         cuts, one at a time. points: single points, `{"law.loss": 0.01, "initial.speed": 1}` each.
         Without both, the scene says what to sweep. Other arguments as in run().
     """
-    options = [word for key, values in (vary or {}).items() for word in ("--vary", f"{key}={bare(values, ',')}")]
-    for point in points:
-        options += ["--point", " ".join(f"{key}={bare(value)}" for key, value in point.items())]
+    options = repeated("--vary", (f"{key}={bare(values, ',')}" for key, values in (vary or {}).items()))
+    options += repeated("--point", (" ".join(f"{key}={bare(value)}" for key, value in point.items())
+                                    for point in points))
     options += ["--cuts"] * cuts + option("--replicas", replicas) + ["--first", first]
     return compute("sweep", "-sweep.h5", scene, set, options, **common)
 
@@ -111,6 +110,10 @@ def option(name: str, value: Any) -> list[str]:
     return [] if value is None else [name, str(value)]
 
 
+def repeated(name: str, values: Iterable[str]) -> list[str]:
+    return [word for value in values for word in (name, value)]
+
+
 def compute(command, ending, scene, set, options, *, output: str | os.PathLike | None = None, force: bool = False,
             seed: int | None = None, threads: int | None = None, progress: bool | Show | None = None,
             **unknown) -> Result:
@@ -120,8 +123,7 @@ def compute(command, ending, scene, set, options, *, output: str | os.PathLike |
     with scene_file(scene) as (path, name):
         output = path_of(output, "output") if output is not None else name + ending
         words = [command, path, *map(str, options), "-o", output, *option("--seed", seed), *settings(set)]
-        words += ["--force"] * force
-        return called(words, output, threads, progress)
+        return called(words + ["--force"] * force, output, threads, progress)
 
 
 def assignments(set: Settings, table: str = "") -> list[str]:
@@ -139,7 +141,7 @@ def assignments(set: Settings, table: str = "") -> list[str]:
 
 
 def settings(set: Settings) -> list[str]:
-    return [word for assignment in assignments(set) for word in ("--set", assignment)]
+    return repeated("--set", assignments(set))
 
 
 def called(words: list[str], output: str, threads: int | None, progress: bool | Show | None) -> Result:
@@ -150,7 +152,7 @@ def called(words: list[str], output: str, threads: int | None, progress: bool | 
         warned += messages
         warnings.warn(in_python(messages.strip()), RuntimeWarning, stacklevel=level + 2)
 
-    with shown(progress) as show:
+    with program.shown(progress) as show:
         done = program.call(words + option("--threads", threads), (DONE, COLLAPSE, LOST), show, warn)
     said = in_python(done.stderr.strip().removeprefix("cradle: ") or done.stdout.strip())
     try:
@@ -175,15 +177,11 @@ def scene_file(scene) -> Iterator[tuple[str, str]]:
         yield scene, os.path.splitext(os.path.basename(scene))[0]
         return
     with tempfile.TemporaryDirectory(prefix="cradle-") as folder:
-        path = os.path.join(folder, name + ".toml")
-        with builtins_open(path, "w", encoding="utf-8") as file:
-            file.write(re.sub(r"""(\bfile *= *)(["'])(.+?)\2""", from_here, scene))
-        yield path, name
-
-
-def from_here(assignment: re.Match) -> str:
-    """initial.file of a scene that has no file to which it could be relative: it is relative to the working folder."""
-    return assignment[1] + value_text(os.path.abspath(assignment[3]))
+        path = Path(folder, name + ".toml")
+        # There is no scene file to which initial.file could be relative: it is relative to the working folder.
+        path.write_text(re.sub(r"""(\bfile *= *)(["'])(.+?)\2""",
+                               lambda found: found[1] + value_text(os.path.abspath(found[3])), scene), "utf-8")
+        yield str(path), name
 
 
 def source_of(scene) -> tuple[str, str]:

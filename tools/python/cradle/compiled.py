@@ -1,6 +1,7 @@
 """The compiled part of live simulations."""
 from __future__ import annotations
 
+import contextlib
 import glob
 import importlib.machinery
 import importlib.util
@@ -9,7 +10,7 @@ import sys
 from numbers import Integral
 from types import ModuleType
 
-from . import program
+from . import __version__, program
 from .errors import BAD_FILE, BAD_INPUT, Error
 
 MODULE = f"{__package__}._live"
@@ -24,10 +25,8 @@ def module() -> ModuleType:
     if MODULE in sys.modules:
         return sys.modules[MODULE]
     folders = [os.path.dirname(os.path.abspath(__file__))]
-    try:
+    with contextlib.suppress(Error):  # reported by who calls the program
         folders.append(os.path.dirname(os.path.realpath(program.find())))
-    except Error:
-        pass  # reported by who calls the program
     importlib.invalidate_caches()  # it may have been built just now
     spec = importlib.machinery.PathFinder.find_spec(MODULE, folders)
     if spec is None:
@@ -36,7 +35,6 @@ def module() -> ModuleType:
                     f"{' and '.join(folders)}, for {sys.executable} {sys.version.split()[0]}): install Debian's "
                     "python3-dev and pybind11-dev and build with tools/quickstart.sh, with CRADLE_PYTHON set to this "
                     "Python; cradle.run() does without", BAD_FILE)
-    from . import __version__
     try:
         found = importlib.util.module_from_spec(spec)
         spec.loader.exec_module(found)

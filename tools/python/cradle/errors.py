@@ -26,11 +26,8 @@ class Error(Exception):
 
 def path_of(value, what: str) -> str:
     """A path as text. Raises Error for what is none."""
-    try:
-        if isinstance(path := os.fspath(value), str):
-            return path
-    except TypeError:
-        pass
+    if isinstance(value, (str, os.PathLike)) and isinstance(path := os.fspath(value), str):
+        return path
     raise Error(f"{what}: not a path (found {value!r}): give a text or a pathlib.Path", BAD_INPUT)
 
 

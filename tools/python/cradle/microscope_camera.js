@@ -3,8 +3,7 @@
 // span of space follows the motion of the particles around the middle during the span of time.
 
 function microscopeCamera(world) {
-  const camera = { world, chart: null, built: null };
-  const limits = { T: 0, X: 0 };
+  const camera = { world, chart: null, built: null }, limits = { T: 0, X: 0 };
 
   camera.home = () => {
     const span = Math.max(world.end - world.start, Number.MIN_VALUE);
@@ -196,9 +195,8 @@ function microscopeCamera(world) {
 }
 
 // The signed time from collision i to collision j.
-function microscopeBetween(world, i, j) {
-  return i <= j ? microscopeFlight(world, i, j) : -microscopeFlight(world, j, i);
-}
+const microscopeBetween = (world, i, j) =>
+  i <= j ? microscopeFlight(world, i, j) : -microscopeFlight(world, j, i);
 
 // The position of a line at tau.
 function microscopeAlong(chart, line, tau) {

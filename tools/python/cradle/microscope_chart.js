@@ -41,9 +41,8 @@ function microscopeAround(world, anchor, reach, more) {
 }
 
 // The last collision at or before tau after the anchor's, -1 for none.
-function microscopeCollisionAt(world, e, tau) {
-  return microscopeFirst(0, world.n, k => microscopeBetween(world, e, k) <= tau) - 1;
-}
+const microscopeCollisionAt = (world, e, tau) =>
+  microscopeFirst(0, world.n, k => microscopeBetween(world, e, k) <= tau) - 1;
 
 // Times since the anchor's collision of collisions in rising order: sums of intervals if they are close.
 function microscopeTimes(world, e, collisions) {

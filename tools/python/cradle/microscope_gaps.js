@@ -15,9 +15,7 @@ function microscopeRelative(world, a, b, e) {
 }
 
 // The distance to the right; on a ring, particles behind are also ahead.
-function microscopeAhead({ ring }, distance) {
-  return ring ? distance - ring * Math.floor(distance / ring) : distance;
-}
+const microscopeAhead = ({ ring }, distance) => ring ? distance - ring * Math.floor(distance / ring) : distance;
 
 // The same from the last collision of the two with each other until e, or the start (step -1), or from their next one
 // (step 1); null if there is none, or if they have too many with others between.

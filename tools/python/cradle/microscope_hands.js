@@ -1,7 +1,5 @@
 // Mouse, wheel, keys and touch; play; and the gap at a point.
 
-const MICROSCOPE_KEYS = { ArrowLeft: [1, 0], ArrowRight: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
-
 function microscopeHands(canvas, scope) {
   const { zoom, pan, visit, actions, state } = scope, fingers = new Map();
   const at = event => {
@@ -64,7 +62,7 @@ function microscopeHands(canvas, scope) {
 
   canvas.addEventListener("keydown", event => {
     if (event.ctrlKey || event.metaKey) return;
-    const box = scope.box(), step = MICROSCOPE_KEYS[event.key], here = scope.camera().view.anchor.e;
+    const box = scope.box(), step = [box.width / 12, box.height / 12], here = scope.camera().view.anchor.e;
     const middle = state.pointer && inside(state.pointer), corner = { x: box.left, y: box.top };
     // With Alt some keyboards give other letters, so the name of the key decides.
     const key = event.code === "Equal" || event.code === "NumpadAdd" || event.key === "+" ? "+" :
@@ -73,11 +71,11 @@ function microscopeHands(canvas, scope) {
       "+": () => zoom(1.35, middle, event.code === "Equal" && event.key === "+" ? undefined : only(event, corner)),
       "-": () => zoom(1 / 1.35, middle, only(event, corner)),
       n: () => visit(here + 1), p: () => visit(here - 1), 0: actions.home, Home: actions.home, d: actions.deepest,
-      c: actions.colours, " ": actions.play,
+      c: actions.colours, " ": actions.play, ArrowLeft: () => pan(step[0], 0), ArrowRight: () => pan(-step[0], 0),
+      ArrowUp: () => pan(0, step[1]), ArrowDown: () => pan(0, -step[1]),
     };
-    if (step) pan(step[0] * box.width / 12, step[1] * box.height / 12);
-    else if (acts[key]) acts[key]();
-    else return;
+    if (!acts[key]) return;
+    acts[key]();
     event.preventDefault();
   });
 }

@@ -96,9 +96,7 @@ function microscopeShown({ count, tint }) {
 }
 
 // The first collision after a time.
-function microscopeFirstAfter(time, t) {
-  return microscopeFirst(0, time.length, k => time[k] <= t);
-}
+const microscopeFirstAfter = (time, t) => microscopeFirst(0, time.length, k => time[k] <= t);
 
 // The particles that are visible. While they keep their order some columns suffice, else all are needed.
 function microscopeVisible(world, view, row, height) {

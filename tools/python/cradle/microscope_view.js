@@ -22,9 +22,8 @@ function microscopeNumber(value, digits = 4) {
   const shown = String(Number(mantissa)).replace("-", "−");
   return (shown === "1" ? "" : shown === "−1" ? "−" : shown + "×") + microscopePower(Number(exponent));
 }
-function microscopePower(exponent) {
-  return "10" + String(exponent).replace(/./g, c => c === "-" ? "⁻" : "⁰¹²³⁴⁵⁶⁷⁸⁹"[Number(c)]);
-}
+const microscopePower = exponent =>
+  "10" + String(exponent).replace(/./g, c => c === "-" ? "⁻" : "⁰¹²³⁴⁵⁶⁷⁸⁹"[Number(c)]);
 
 // Round steps that divide a span into up to `count` parts.
 function microscopeStep(span, count) {

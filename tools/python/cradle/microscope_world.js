@@ -8,8 +8,9 @@ const microscopeTypes = { f8: Float64Array, u1: Uint8Array, u2: Uint16Array, u4:
 // The kinds of collisions: by the law, elastic, a merge (numbered as `kind` in results), or a passage by the law.
 const MICROSCOPE = { byLaw: 0, elastic: 1, merge: 2, pass: 3 };
 
-// The typed array of {type, length, deflate}: byte planes, deflated, as base64.
+// The typed array of {type, length, deflate}: byte planes, deflated, as base64; null if there is none.
 async function microscopeArray(packed) {
+  if (!packed) return null;
   const deflated = await fetch(`data:application/octet-stream;base64,${packed.deflate}`);
   const stream = deflated.body.pipeThrough(new DecompressionStream("deflate"));
   const planes = new Uint8Array(await new Response(stream).arrayBuffer());
@@ -23,9 +24,9 @@ async function microscopeArray(packed) {
 
 // The world for data of kind "collisions".
 async function microscopeCollisions(data) {
-  const open = name => data[name] ? microscopeArray(data[name]) : null;
   const names = ["x", "v", "gap", "mass", "left", "right", "interval", "speed", "event"];
-  const [x0, v0, gap0, mass, left, right, interval, speed, event] = await Promise.all(names.map(open));
+  const [x0, v0, gap0, mass, left, right, interval, speed, event] = await Promise.all(
+    names.map(name => microscopeArray(data[name])));
   const n = interval.length, particles = x0.length;
   const world = {
     n, particles, x0, v0, gap0, mass0: mass, left, interval, law: data.law, first: data.first, ring: data.length,
@@ -41,8 +42,8 @@ async function microscopeCollisions(data) {
 
 // The world at a snapshot: it has no collisions, and world lines are known until the next one (`valid`, by particle).
 async function microscopeSnapshot(data, snapshot) {
-  const open = name => snapshot[name] ? microscopeArray(snapshot[name]) : null;
-  const [gap, w, mass, index] = await Promise.all(["gap", "speed", "mass", "index"].map(open));
+  const names = ["gap", "speed", "mass", "index"];
+  const [gap, w, mass, index] = await Promise.all(names.map(name => microscopeArray(snapshot[name])));
   const particles = snapshot.particles, x0 = new Float64Array(particles), v0 = new Float64Array(particles);
   const valid = new Float64Array(particles).fill(Infinity);
   x0[0] = snapshot.x;
@@ -75,8 +76,8 @@ function microscopeReplay(world) {
   for (let e = 0; e < n; ++e) { ++begin[left[e] + 1]; ++begin[right[e] + 1]; }
   for (let particle = 0; particle < particles; ++particle) begin[particle + 1] += begin[particle];
   const fill = begin.slice(), slotLeft = new Int32Array(n), slotRight = new Int32Array(n);
-  const time = new Float64Array(n), low = new Float64Array(n), x = new Float64Array(n), after = new Float64Array(n);
-  const ofLeft = new Float64Array(n), ofRight = new Float64Array(n);  // shares of the two in their mass
+  // ofLeft, ofRight: shares of the two in their mass.
+  const [time, low, x, after, ofLeft, ofRight] = Array.from({ length: 6 }, () => new Float64Array(n));
   const depth = new Float32Array(n), lost = new Float32Array(n);
   const [slotTime, slotPlace, velocity, slotMass] = Array.from({ length: 4 }, () => new Float64Array(2 * n));
   world.mass0 ||= new Float64Array(particles).fill(1);
@@ -130,8 +131,8 @@ function microscopeReplay(world) {
   }
 }
 
-function microscopeLog(x) { return x > 0 ? Math.log10(x) : -400; }
-function microscopeClamp(x, low, high) { return Math.min(high, Math.max(low, x)); }
+const microscopeLog = x => x > 0 ? Math.log10(x) : -400;
+const microscopeClamp = (x, low, high) => Math.min(high, Math.max(low, x));
 
 // The time from right after collision i (-1: the start) to collision j >= i.
 function microscopeFlight(world, i, j) {
@@ -155,24 +156,19 @@ function microscopeFirst(low, high, before) {
 }
 
 // The slot of the first collision of a particle after collision e.
-function microscopeSlotAfter({ begin, list }, particle, e) {
-  return microscopeFirst(begin[particle], begin[particle + 1], slot => list[slot] <= e);
-}
+const microscopeSlotAfter = ({ begin, list }, particle, e) =>
+  microscopeFirst(begin[particle], begin[particle + 1], slot => list[slot] <= e);
 
 // Time and position of an anchor in the lab.
-function microscopeOrigin(world, { e, a }) {
-  return e < 0 ? { t: world.start, x: world.x0[a] } : { t: world.time[e], x: world.x[e] };
-}
+const microscopeOrigin = (world, { e, a }) =>
+  e < 0 ? { t: world.start, x: world.x0[a] } : { t: world.time[e], x: world.x[e] };
 
 // The other particle of a collision, and the change of a particle's velocity in a collision.
-function microscopeOther(world, particle, e) { return world.left[e] === particle ? world.right[e] : world.left[e]; }
-function microscopeKick({ left, speed, after, ofLeft, ofRight }, particle, e) {
-  return left[e] === particle ? (after[e] - speed[e]) * ofRight[e] : (speed[e] - after[e]) * ofLeft[e];
-}
+const microscopeOther = (world, particle, e) => world.left[e] === particle ? world.right[e] : world.left[e];
+const microscopeKick = ({ left, speed, after, ofLeft, ofRight }, particle, e) =>
+  left[e] === particle ? (after[e] - speed[e]) * ofRight[e] : (speed[e] - after[e]) * ofLeft[e];
 // The particle that disappears in a merger: the lighter one or, of two equal ones, the right one.
-function microscopeGone(world, e) {
-  return world.ofRight[e] > 0.5 ? world.left[e] : world.right[e];
-}
+const microscopeGone = (world, e) => world.ofRight[e] > 0.5 ? world.left[e] : world.right[e];
 // The collision in which a particle disappears; -1 if there is none.
 function microscopeMerger(world, particle) {
   const slot = world.begin[particle + 1] - 1, last = slot < world.begin[particle] ? -1 : world.list[slot];

@@ -2,18 +2,22 @@
 from __future__ import annotations
 
 import contextlib
+import html
 import os
 import shutil
 import signal
 import socket
 import subprocess
+import sys
 import tempfile
 import threading
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 
 from .errors import BAD_FILE, BAD_INPUT, DONE, Error, in_python
 
 WHERE = ((*[".."] * 3, "build", "release", "tools", "cradle"), (*[".."] * 4, "bin", "cradle"))  # from this package
+WIDTH = 30  # of a bar
+Show = Callable[[float, str], None]  # of the finished share and a line of text
 
 
 def find() -> str:
@@ -32,8 +36,7 @@ def find() -> str:
                 "build it with tools/quickstart.sh, or set CRADLE_PROGRAM to it", BAD_FILE)
 
 
-def call(arguments: Sequence[str], accepted: Sequence[int] = (DONE,),
-         show: Callable[[float, str], None] | None = None,
+def call(arguments: Sequence[str], accepted: Sequence[int] = (DONE,), show: Show | None = None,
          warn: Callable[[str], None] | None = None) -> subprocess.CompletedProcess[str]:
     """Calls the program with these arguments.
 
@@ -100,3 +103,47 @@ def interrupts_later():
         signal.signal(signal.SIGINT, before)
     if came and callable(before):
         before(*came[0])
+
+
+@contextlib.contextmanager
+def shown(progress: bool | Show | None) -> Iterator[Show | None]:
+    """The function to call with the finished share and a line of text; None if nothing is to be shown.
+
+    progress: a function of these two; True or False; None shows progress on terminals and in notebooks.
+    """
+    shell = sys.modules.get("IPython") and sys.modules["IPython"].get_ipython()
+    if callable(progress) or progress is False:
+        yield progress or None
+    elif type(shell).__name__ == "ZMQInteractiveShell":
+        yield from notebook()
+    elif progress or (sys.stderr is not None and sys.stderr.isatty()):
+        yield from terminal()
+    else:
+        yield None
+
+
+def terminal() -> Iterator[Show]:
+    def show(share: float, text: str) -> None:
+        print(f"\r\033[K[{'#' * int(share * WIDTH):<{WIDTH}}] {text}", end="", file=sys.stderr, flush=True)
+        drawn.append(True)
+
+    drawn: list[bool] = []
+    try:
+        yield show
+    finally:
+        if drawn:
+            print("\r\033[K", end="", file=sys.stderr, flush=True)
+
+
+def notebook() -> Iterator[Show]:
+    from IPython.display import HTML, display
+
+    def show(share: float, text: str) -> None:
+        last[0] = html.escape(text)
+        handle.update(HTML(f'<progress max="1" value="{share:.3f}" style="width:20em"></progress> {last[0]}'))
+
+    handle, last = display(HTML(""), display_id=True), [""]
+    try:
+        yield show
+    finally:
+        handle.update(HTML(last[0]))

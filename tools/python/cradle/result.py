@@ -26,18 +26,13 @@ def open(path: str | os.PathLike, check: bool | None = None) -> Result:
     Raises Error (status 4) if the file is missing, empty, incomplete, damaged, or not a result of this program.
     """
     path = path_of(path, "open")
-    if stored_in(path) == "journal":
-        return so_far(path)
-    sealed = is_sealed(path, check)
-    return Result(path, open_file(path), sealed)
-
-
-def so_far(path: str) -> Result:
-    """The rows recorded by a run in progress: the program writes them to a temporary file, removed once it is open."""
-    with tempfile.TemporaryDirectory(prefix="cradle-") as folder:
-        copy = os.path.join(folder, "so_far.h5")
-        program.call(["export", path, "--result", copy])
-        return Result(path, open_file(copy), sealed=True, in_progress=True)
+    if stored_in(path) == "result":
+        sealed = is_sealed(path, check)
+        return Result(path, open_file(path), sealed)
+    with tempfile.TemporaryDirectory(prefix="cradle-") as folder:  # it may be removed once the file is open
+        rows = os.path.join(folder, "so_far.h5")
+        program.call(["export", path, "--result", rows])
+        return Result(path, open_file(rows), sealed=True, in_progress=True)
 
 
 def part(kind, name: str, text: str) -> Any:

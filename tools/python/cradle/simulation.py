@@ -205,7 +205,7 @@ class Simulation:
         if calls > MOST_CALLS:
             raise Error(f"every: too many calls (found {dt}, which makes {calls:.3g} of them until run.until): give a "
                         f"longer time, {MOST_CALLS:.0g} calls at most", BAD_INPUT)
-        self._timers.append(Timer(start, step, callable_of(f, "every")))
+        self._timers.append(Timer(EXACT.add(start, step), step, callable_of(f, "every")))
         return f
 
     def remove(self, f: Callable) -> None:

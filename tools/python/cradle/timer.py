@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import decimal
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Union
 
 from .errors import BAD_INPUT, Error
@@ -14,18 +15,15 @@ Time = Union[float, int, str, decimal.Decimal]
 EXACT = decimal.Context(prec=4096)  # for sums of times; wide types have many digits
 
 
+@dataclass
 class Timer:
-    """A function that is called at times start + k step."""
-
-    def __init__(self, start: decimal.Decimal, step: decimal.Decimal, function: Callable[[Simulation], Any]):
-        self.start, self.step, self.function, self.count = start, step, function, 1
-
-    @property
-    def due(self) -> decimal.Decimal:
-        return EXACT.add(self.start, EXACT.multiply(self.step, self.count))
+    """A function that is called at times due + k step."""
+    due: decimal.Decimal
+    step: decimal.Decimal
+    function: Callable[[Simulation], Any]
 
     def call(self, simulation: Simulation) -> None:
-        self.count += 1  # first: the function may raise, and is not called again at this time
+        self.due = EXACT.add(self.due, self.step)  # first: if the function raises, it is not called again at this time
         self.function(simulation)
 
 

@@ -52,7 +52,7 @@ template <class Chain, class Law, class Time = int>
 SlabsMade expect_same_in_steps(const Scene<typename Chain::Scalar>& scene, const Law& law,
                                const std::vector<Time>& times, const std::vector<SegmentsAs>& ways) {
   const std::vector<typename Chain::Scalar> in_scalar(times.begin(), times.end());
-  return expect_same_in_segments<Chain>(scene, law, ways, in_scalar, SameBits());
+  return expect_same_in_segments<Chain, true>(scene, law, ways, in_scalar);
 }
 
 template <class Chain>
@@ -71,15 +71,9 @@ void expect_same_by_all_laws(const Scene<typename Chain::Scalar>& scene, const s
   EXPECT_GE(static_cast<double>(all.in_steps), least_in_steps * static_cast<double>(all.collisions));
 }
 
-// A cool wall on the right, and on the left a heated one or, of unequal particles, one that moves.
 template <class Chain> void expect_same_between_walls(const std::vector<int>& times, double least_in_steps) {
   using T = typename Chain::Scalar;
-  const bool unequal = !std::same_as<Chain, GapChain<T>>;
-  const Wall<T> hot{.position = T(-1), .temperature = 0.4, .seed = 5, .replica = 2};
-  const Wall<T> moving{.position = T(-1), .speed = T(1) / T(10), .restitution = T(9) / T(10)};
-  const Wall<T> cool{.position = T(801), .temperature = 0.1, .seed = 5, .replica = 2};
-  const auto scene = std::make_shared<Walled<T>>(gas<T>(800, T(0), unequal), unequal ? moving : hot, cool);
-  expect_same_by_all_laws<Chain>(scene, times, least_in_steps);
+  expect_same_by_all_laws<Chain>(gas_between_walls<T>(!std::same_as<Chain, GapChain<T>>), times, least_in_steps);
 }
 
 // Under gravity and between shaken walls.

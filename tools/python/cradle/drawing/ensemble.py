@@ -1,9 +1,8 @@
-"""Ensembles: the mean over the replicas with its standard error (dark band; often no wider than the line) and the
-extremes (light band); profiles; and the times of inelastic collapse if replicas stopped there."""
+"""Ensembles: means over the replicas, with standard errors and extremes; profiles; the times of inelastic collapse."""
 import numpy as np
 
 from ..result import fronts
-from .cooling import cooled, cools, draw_laws, ring_of
+from .energy import cooled, cools, draw_laws, ring_of
 from .shock import draw_slope
 from .style import BLUE, GREY, ORANGE, beside, note, shaded, thinned
 

@@ -1,34 +1,39 @@
-"""Which pictures a result has, and writing them. Every kind is a module with pictures(result, theory, units), which
-yields a name, the function that draws the picture, and its arguments before `panels`; nothing without the data."""
+"""Which pictures a result has, what every picture gets, and writing them. For each kind a function of (result, theory,
+units) yields a name, the function that draws the picture, and its arguments before `panels`; nothing without the data.
+"""
 import contextlib
 import os
+import re
+import textwrap
 
 import matplotlib.pyplot as plt
+from matplotlib.text import Text
+from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
 
 from ..errors import BAD_FILE, Error
 from ..files import whole
-from . import (averages, beyond, blast, clusters, cooling, correlations, domino, energy, ensemble, floors, histograms,
-               onset, particles, places, proof, scenarios, shock, spacetime, splash, sticky, structure, sweep,
-               threshold, walls, words, zone)
-from .finish import finish
+from . import (beyond, clusters, cold, energy, ensemble, measured, particles, proof, scenarios, shock, sticky, sweep,
+               walls)
 from .style import Panels, Units, style
 from .theory import Theory
 
-CLASSICS = (onset, floors, blast, domino, splash, walls)
 # The first of these that has something to show is all there is.
-ALONE = (words, threshold, proof, *CLASSICS, scenarios, sweep, ensemble, spacetime, particles)
-TOGETHER = (beyond, sticky, cooling, zone, clusters, shock, structure, energy)
-MEASURED = (averages, histograms, correlations, places)  # behind the others
+ALONE = (proof.pictures, scenarios.onsets, walls.shaken, cold.pictures, walls.pictures, scenarios.pictures,
+         sweep.pictures, ensemble.pictures, particles.pictures)
+TOGETHER = (beyond.pictures, sticky.pictures, energy.cooling, clusters.pictures, shock.pictures, shock.structures,
+            energy.pictures)
+LAST = (measured.pictures, proof.certificates)  # behind the others
+PAPER = "Equations and sections: Zaburdaev and Herminghaus, Phys. Rev. E 75, 031304 (2007)"
+CITED = re.compile(r"Eqs?\. \(|\(1?\d\)(,|$)|^section [IV]")
+WIDE = 12  # characters of a title per inch
 
 
 def pictures_of(result, theory, units):
     """The pictures, the main one first and a proof last."""
-    last = [picture for kind in MEASURED for picture in kind.pictures(result, theory, units)]
-    last += proof.certificates(result, units)
-    for kind in ALONE:
-        if found := list(kind.pictures(result, theory, units)):
-            return found + last
-    return [picture for kind in TOGETHER for picture in kind.pictures(result, theory, units)] + last
+    def all_of(kinds):
+        return [picture for kind in kinds for picture in kind(result, theory, units)]
+    alone = next(filter(None, (all_of([kind]) for kind in ALONE)), None)
+    return (alone or all_of(TOGETHER)) + all_of(LAST)
 
 
 def available(result, predictions):
@@ -48,6 +53,39 @@ def drawing(path, name, draw, arguments, title):
             panels.add_legends()
             return panels.figure if axes is not None else finish(panels.figure, title if titled else "")
     return drawn
+
+
+def finish(figure, title):
+    """Adds the title of its scene, "" for none, labels on axes of less than a decade, and the name of a cited paper."""
+    for axes in figure.axes:
+        for axis in (axes.xaxis, axes.yaxis):
+            label_ticks(axis)
+    own = getattr(figure, "_suptitle", None)
+    lines = textwrap.wrap(title.replace("$", r"\$"), int(WIDE * figure.get_figwidth()))
+    if own is not None:
+        lines.append(own.get_text())
+    if lines:
+        figure.suptitle("\n".join(lines), fontsize=9)
+    if any(CITED.search(text.get_text()) for text in figure.findobj(Text)):
+        figure.supxlabel(PAPER, fontsize=6.5, x=0.99, ha="right", color="0.5")
+    return figure
+
+
+def label_ticks(axis):
+    """A logarithmic axis on which fewer than two powers of ten are in sight gets labels between them."""
+    if axis.get_scale() != "log" or not axis.get_visible():
+        return
+    low, high = sorted(axis.get_view_interval())
+    locators = [axis.get_major_locator(), LogLocator(subs=(1, 2, 5)), LogLocator(subs=(1, 2, 3, 4, 5, 6, 8)),
+                MaxNLocator(4)]
+    for locator in locators:
+        seen = [tick for tick in locator.tick_values(low, high) if low <= tick <= high]
+        if len(seen) > 1:
+            break
+    if locator is not locators[0]:
+        axis.set_major_locator(locator)
+        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:.4g}"))
+        axis.set_minor_formatter(NullFormatter())
 
 
 @contextlib.contextmanager

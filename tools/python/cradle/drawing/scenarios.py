@@ -1,5 +1,7 @@
-"""Sweeps that answer a question replica by replica: whether the two heaviest clusters of a wet shock pass or stick
-(paper, section VI), and when an inelastic shock collapses (against N_c/(2 u0), section III)."""
+"""Questions that each replica of a sweep answers: whether it collapses on a ring or at walls, against the number of
+particles (beside McNamara and Young's estimate, and the exact number in free space or at a wall, which is a mirror);
+whether the two heaviest clusters of a wet shock pass or stick (paper, section VI); when an inelastic shock collapses
+(against N_c/(2 u0), section III)."""
 import numpy as np
 
 from .style import BLUE, GREY, RED, SKY, shaded, shades
@@ -8,6 +10,12 @@ from .style import BLUE, GREY, RED, SKY, shaded, shades
 REGIMES = {1: ("apart", SKY), 2: ("through each other", BLUE), 3: ("stuck last", RED), 0: ("one cluster only", "0.8")}
 LOSS = r"$E_\mathrm{loss}$ ($m\,l^2/t^2$)"
 ENOUGH = 10  # replicas of a point of which shares are drawn
+
+
+def onsets(result, _theory, _units):
+    curves = shares_of(result)
+    if curves and max(len(points) for points in curves.values()) >= 3:
+        yield "onset", draw_onset, curves, any("walls" in point.scene for point in result.points)
 
 
 def pictures(result, _theory, _units):
@@ -30,12 +38,84 @@ def wilson(hits, count):
     return share, max(0.0, middle - half), min(1.0, middle + half)
 
 
+def grouped(points, *setting):
+    """The points for each value of a setting, by increasing value."""
+    groups = {}
+    for point in points:
+        groups.setdefault(point.setting(*setting), []).append(point)
+    return sorted(groups.items())
+
+
+def finite(values):
+    values = np.asarray(values, float)
+    return values[np.isfinite(values)]
+
+
+def known_times(point):
+    return finite(point.replicas.get("collapse_time", ()))
+
+
+def critical_number(restitution):
+    """N_c: more particles than this collapse in free space."""
+    return 2 / (1 - 4 / np.pi * np.arctan(np.sqrt(restitution)))
+
+
+def can_collapse(point):
+    """On a ring, or at walls that lose as much as a collision of two."""
+    walls = [wall for wall in point.scene.get("walls", {}).values() if isinstance(wall, dict)]
+    restitution = point.setting("law", "restitution")
+    return point.word("run", "collapse") == "stop" and (
+        point.word("initial", "type") == "ring" or walls and all(w.get("restitution") == restitution for w in walls))
+
+
+def particles_of(point):
+    initial = point.scene["initial"]
+    return initial["particles"] if "particles" in initial else sum(initial[s]["particles"] for s in ("left", "right"))
+
+
+def shares_of(result):
+    """(N, collapsed, replicas) by increasing N for each restitution; for those that stop at a collapse."""
+    found = [point for point in result.points if can_collapse(point) and "collapse_time" in point.replicas]
+    return {eps: sorted((particles_of(point), known_times(point).size, len(point.replicas["collapse_time"]))
+                        for point in points) for eps, points in grouped(found, "law", "restitution")}
+
+
+def half(points):
+    """N at which half of the replicas collapse, interpolated at the first crossing; NaN if there is none."""
+    number, hits, count = np.array(points).T
+    share = hits / count
+    above = np.flatnonzero(share >= 0.5)
+    if not above.size or above[0] == 0:
+        return np.nan
+    crossing = slice(above[0] - 1, above[0] + 1)
+    return np.interp(0.5, share[crossing], number[crossing])
+
+
+def draw_onset(curves, walled, panels):
+    left, right = panels(1, 2, figsize=(7.4, 3.4))
+    for (eps, points), colour in shaded(curves.items()):
+        number = np.array([n for n, _, _ in points])
+        share, low, high = np.array([wilson(hits, count) for _, hits, count in points]).T
+        left.errorbar(number * (1 - eps), share, yerr=[share - low, high - share], fmt="o-", ms=3, lw=0.9, capsize=2,
+                      color=colour, label=rf"$r={eps:g}$")
+    left.set(xlabel=r"$N(1-r)$", ylabel="part of the replicas that collapse", ylim=(-0.03, 1.03))
+    left.legend(loc="lower right")
+    eps = np.array(list(curves))
+    right.loglog(1 - eps, [half(points) for points in curves.values()], "o", ms=5, label="half of the replicas")
+    least = [min((number for number, hits, _ in points if hits), default=np.nan) for points in curves.values()]
+    right.loglog(1 - eps, least, "v", ms=4, label="one replica")
+    fine = np.geomspace((1 - eps).min() / 1.5, min((1 - eps).max() * 1.5, 0.95), 100)
+    right.plot(fine, np.log(4 / fine) / fine, "k--", lw=1, label=r"$\ln(4/(1-r))/(1-r)$")
+    right.plot(fine, critical_number(1 - fine) / (2 if walled else 1), "k:", lw=1,
+               label="at a wall, exact" if walled else "free space, exact")
+    right.set(xlabel=r"$1-r$", ylabel="particles $N_c$")
+    right.legend(loc="lower left")
+
+
 def curves(result):
     """The points for each perturbation, by increasing loss."""
-    groups = {}
-    for point in result.points:
-        groups.setdefault(point.setting("initial", "perturbation", 0.0), []).append(point)
-    return {size: sorted(points, key=lambda p: p.setting("law", "loss")) for size, points in sorted(groups.items())}
+    return {size: sorted(points, key=lambda p: p.setting("law", "loss"))
+            for size, points in grouped(result.points, "initial", "perturbation", 0.0)}
 
 
 def estimated(points, name, estimate):
@@ -43,11 +123,6 @@ def estimated(points, name, estimate):
     known = [(point.setting("law", "loss"), finite(point.replicas[name])) for point in points]
     rows = [(loss, *estimate(values)) for loss, values in known if len(values) >= ENOUGH]
     return np.array(rows).reshape(-1, 4).T
-
-
-def finite(values):
-    values = np.asarray(values, float)
-    return values[np.isfinite(values)]
 
 
 def mean(values):
@@ -92,18 +167,9 @@ def draw_regimes(result, panels):
     axes[0].legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncol=4)
 
 
-def known_times(point):
-    return finite(point.replicas.get("collapse_time", ()))
-
-
 def collapsed(result):
     """The points of shocks of which enough replicas have collapsed for a distribution."""
     return [p for p in result.points if p.word("initial", "type") == "rows" and known_times(p).size >= ENOUGH]
-
-
-def critical_number(restitution):
-    """N_c: more particles than this collapse in free space."""
-    return 2 / (1 - 4 / np.pi * np.arctan(np.sqrt(restitution)))
 
 
 def draw_collapse(result, panels):

@@ -1,12 +1,11 @@
-"""Sweeps: results against the parameters that were varied. Rings: the energies of all points in one panel, and their
-ratio to the sticky one's. Wet shocks: the width of the interaction zone (Fig. 8). Every number of the summary against
-what was varied; of rings if that is one key or a grid of two."""
+"""Sweeps: energies of rings beside the sticky one's; the width of the interaction zone of wet shocks (Fig. 8); every
+number of the summary against what was varied, of rings if that is one key or a grid of two."""
 import numpy as np
 
 from . import beyond
-from .cooling import cooled, sticky_law
+from .clusters import model_width
+from .energy import cooled, sticky_law
 from .style import BLUE, GREY, ORANGE, distinct, note, plt, shades
-from .zone import model_width
 
 SPEED, LOSS = "initial.speed", "law.loss"
 BESIDE = ("_error", "_replicas")  # what goes with a number of the summary
@@ -109,7 +108,6 @@ def draw_widths(result, keys, panels):
     loss = keys.get(LOSS, np.full(len(width), first.setting("law", "loss", np.nan)))
     spacing = first.setting("initial", "spacing", 1.0)
     error = error_of(result, "zone_width")
-    error = np.zeros(len(width)) if error is None else error
     ax = panels(figsize=(5.2, 4.2))
     other = ax.twiny()
     for axes, values, fixed, model, given, label, mark, line, colour in (

@@ -22,8 +22,7 @@ class Theory:
 
     def curve(self, quantity):
         """Times and values, both empty where there is no prediction."""
-        points = self._pick(quantity, True)
-        return np.array([t for t, _ in points]), np.array([value for _, value in points])
+        return np.array(self._pick(quantity, True)).reshape(-1, 2).T
 
     def number(self, quantity):
         points = self._pick(quantity, False)

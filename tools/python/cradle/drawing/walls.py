@@ -1,16 +1,19 @@
-"""A gas between walls: the positions of its particles, their energies, and the energy from the walls (Du, Li and
-Kadanoff, Phys. Rev. Lett. 74, 1268, 1995)."""
+"""Between walls. At rest: the positions of a gas, its energies, and the energy from the walls (Du, Li and Kadanoff,
+Phys. Rev. Lett. 74, 1268, 1995). Shaken (formulas: core/laws/README.md): the height of one ball once a period against
+the amplitude, with the first period doubling; of a column of beads against X = N (1 - r), beside nearly elastic ones.
+"""
 import numpy as np
 
-from .particles import MARKED, few
-from .style import BLUE, GREY, ORANGE
+from .particles import MARKED, few, one_falls
+from .style import BLUE, GREY, ORANGE, shaded
 
 FEW = 12  # snapshots, for quantiles against time to mean something
+LAST = 64  # samples of a ball that are shown
 
 
 def pictures(result, _theory, _units):
     if given_by(result.means) and len(result.snapshots) >= FEW and not few(result):
-        yield "walls", draw, result
+        yield "walls", draw_gas, result
 
 
 def given_by(series):
@@ -18,7 +21,19 @@ def given_by(series):
     return [name for name in ("wall_left_energy", "wall_right_energy") if name in series]
 
 
-def draw(result, panels):
+def shaken(result, _theory, _units):
+    points = [point for point in result.points if floor_of(point) and point.setting("gravity", "acceleration", 0.0) < 0]
+    if len(points) < 3:
+        return
+    if one_falls(points[0]):
+        yield "bouncing", draw_ball, points
+    elif all(floor_of(point)["motion"] == "sawtooth" for point in points):
+        yield "column", draw_column, points
+
+
+# ---- a gas
+
+def draw_gas(result, panels):
     series, snapshots = result.means, result.snapshots
     axes = panels.stacked("position $x$ ($l$)", "share of the energy\nthat one particle has", r"energy ($m\,l^2/t^2$)",
                           x="time ($t$)", height=2.2)
@@ -45,3 +60,65 @@ def draw(result, panels):
         if (there := sign * given > 0).any():
             axes[2].semilogy(series["time"][there], sign * given[there], line, color=ORANGE, lw=1.2, label=label)
     axes[2].legend(fontsize=7)
+
+
+# ---- a shaken floor
+
+def floor_of(point):
+    """The left wall, if it is shaken."""
+    wall = point.scene.get("walls", {}).get("left", {})
+    return wall if wall.get("motion", "none") != "none" else {}
+
+
+def heights(point, particles):
+    """Of the centre of mass over the place of the floor, at all samples (masses 1)."""
+    energy = np.asarray(point.means["potential_energy"])
+    return energy / (particles * -point.setting("gravity", "acceleration")) - floor_of(point)["position"]
+
+
+def doubling(restitution):
+    """A omega^2/g at which the flight of one period of a ball on a sine doubles its period."""
+    r = restitution
+    return np.hypot(2 * (1 + r * r) / (1 + r) ** 2, np.pi * (1 - r) / (1 + r))
+
+
+def draw_ball(points, panels):
+    ax = panels(figsize=(7.4, 3.6))
+    for point in points:
+        floor, g = floor_of(point), -point.setting("gravity", "acceleration")
+        strength = floor["amplitude"] * floor["frequency"] ** 2 / g
+        last = heights(point, 1)[-LAST:]
+        ax.plot(np.full(len(last), strength), last * floor["frequency"] ** 2 / g, ".", ms=1.5, color=BLUE, mew=0)
+    r = floor_of(points[0])["restitution"]
+    ax.axvline(1, color=GREY, lw=0.8, ls=":", label="the floor lets go")
+    ax.axvline(doubling(r), color=ORANGE, lw=1, ls="--", label=f"periods double, {doubling(r):.4f}")
+    ax.set(xlabel=r"$A\omega^2/g$", ylabel=r"height once a period $x\,\omega^2/g$")
+    ax.legend(loc="upper left")
+
+
+def column_of(point):
+    """X, V and the mean height over the later half of the samples, with its error from blocks of them."""
+    particles = point.setting("initial", "particles")
+    later = heights(point, particles)[len(point.means["time"]) // 2:]
+    blocks = np.array([block.mean() for block in np.array_split(later, min(16, len(later)))])
+    floor = floor_of(point)
+    return (particles * (1 - point.setting("law", "restitution")), floor["amplitude"] * floor["frequency"] / np.pi,
+            blocks.mean(), blocks.std(ddof=1) / np.sqrt(len(blocks)))
+
+
+def draw_column(points, panels):
+    left, right = panels(1, 2, figsize=(7.4, 3.4))
+    g = -points[0].setting("gravity", "acceleration")
+    found = np.array([column_of(point) for point in points])
+    speeds = np.unique(np.round(found[:, 1], 9))
+    for speed, colour in shaded(speeds):
+        x, v, height, error = found[np.isclose(found[:, 1], speed)].T
+        left.errorbar(x, height, yerr=error, fmt="o", ms=3.5, capsize=2, color=colour, label=rf"$V={speed:.3g}$")
+        fine = np.geomspace(x.min(), x.max(), 50)
+        left.plot(fine, np.pi * speed ** 2 / (g * fine ** 2), "--", lw=0.9, color=colour)
+        right.errorbar(x, height * g * x ** 2 / (np.pi * v ** 2), yerr=error * g * x ** 2 / (np.pi * v ** 2), fmt="o",
+                       ms=3.5, capsize=2, color=colour)
+    left.set(xscale="log", yscale="log", xlabel="$X=N(1-r)$", ylabel="height of the centre of mass ($l$)")
+    left.legend(loc="lower left")
+    right.axhline(1, color="k", ls="--", lw=1)
+    right.set(xscale="log", xlabel="$X=N(1-r)$", ylabel=r"height / ($\pi V^2/gX^2$)", ylim=(0, None))

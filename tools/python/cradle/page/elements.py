@@ -100,12 +100,9 @@ def sortable(caption: str, heads: Sequence[str], rows: Iterable[Sequence[tuple[A
              + "".join(f'<th scope=col aria-sort="none"><button type="button">{head}</button>' for head in heads)
              + "</thead>\n<tbody>"]
     for cells in rows:
-        lines.append("<tr>" + "".join(f'<td data-by="{html.escape(key_of(by))}">{shown}' for by, shown in cells))
+        keyed = ((by if isinstance(by, str) else repr(float(by)), shown) for by, shown in cells)
+        lines.append("<tr>" + "".join(f'<td data-by="{html.escape(key)}">{shown}' for key, shown in keyed))
     return "\n".join(lines) + "\n</tbody></table></div>\n"
-
-
-def key_of(value: Any) -> str:
-    return repr(float(value)) if isinstance(value, (int, float)) else str(value)
 
 
 def section(name: str, title: str, content: str) -> str:

@@ -1,4 +1,4 @@
-"""The page: the sections of a result's report and their contents. It contains everything and needs no network."""
+"""The page of a report: the sections and their contents. It contains everything and needs no network."""
 from __future__ import annotations
 
 import base64
@@ -14,10 +14,11 @@ from .. import microscope as canvas
 from .. import program
 from ..commands import scene_file
 from ..errors import Error
-from ..files import made_from
+from ..files import check_replaced, made_from, whole
+from ..opening import read_seal
 from ..plot import PICTURES, drawings
 from ..result import Result
-from ..seal import read_seal
+from ..result import open as open_result
 from .elements import code, count_of, number, preformatted, rows, section, text
 from .intro import introduction
 from .numbers import Entries, last, numbers, warnings
@@ -26,9 +27,27 @@ from .tables import tables
 # The browser may load nothing that is not in the page.
 POLICY = ("default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data: blob:; "
           "connect-src data: blob:; worker-src blob:")
-SCHEMES = ("light", "dark")  # in which every picture is drawn
+SCHEMES = ("light", "dark")  # in which every picture is drawn: the style sheet shows one
 LARGEST = 1_500_000  # bytes of SVG; beyond it pixels are smaller, and browsers faster with them
 LONGEST_SCENE = 100_000  # characters; listed particles may be many
+
+
+def report(result: Result | str | os.PathLike, output: str | os.PathLike | None = None, force: bool = True) -> str:
+    """Writes one HTML file that needs nothing else and returns its path: light and dark, prints; same file, same bytes.
+
+    result: an opened result, its path, or FILE.part of a run in progress.
+    output: by default the result's path with .html. Written beside its place and renamed.
+    force: False replaces only a page that was made from a result of the same name.
+    Raises Error if the result cannot be read or the page cannot be written.
+    """
+    opened = result if isinstance(result, Result) else open_result(result)
+    output = os.fspath(output or os.path.splitext(opened.path.removesuffix(".part"))[0] + ".html")
+    if not force:
+        check_replaced(output, made_from("report", opened.path))
+    content = page(opened)
+    with whole(output) as part, open(part, "w", encoding="utf-8", newline="\n") as file:
+        file.write(content)
+    return output
 
 
 def page(result: Result) -> str:
@@ -38,7 +57,9 @@ def page(result: Result) -> str:
     sections = [("numbers", "Numbers", numbers(result)), ("tables", "Tables", tables(result)),
                 ("pictures", "Pictures", pictures(result)), ("microscope", "Microscope", microscope(result)),
                 ("again", "Run it again", again(result)), ("cost", "Cost", rows(cost(result))),
-                ("provenance", "Provenance", rows(provenance(result, version))), ("cite", "Cite", cite())]
+                ("provenance", "Provenance", rows(provenance(result, version))),
+                ("cite", "Cite", "<p>The paper for the model, the program together with the scene:</p>\n"
+                 + preformatted(beside(os.path.join("..", "cite.bib"))))]
     warned = list(warnings(result, version.split("\n")[0].removeprefix("cradle ")))
     title = text(result.attributes.get("name", "")) + " – " + text(result.scene.get("title") or result.kind)
     links = " ".join(f'<a href="#{name}">{head}</a>' for name, head, content in sections if content)
@@ -84,12 +105,6 @@ def lead(result: Result) -> str:
     return " · ".join(part for part in parts if part)
 
 
-def picture(draw, caption: str) -> str:
-    """A picture of cradle.plot.drawings, light and dark: the style sheet shows one. Same picture, same text."""
-    return "".join(f'<img class="{name}" alt="{html.escape(caption)}" src="{data_of(draw, name == "dark")}">'
-                   for name in SCHEMES)
-
-
 def data_of(draw, dark: bool) -> str:
     """A picture as an address: SVG, or PNG if that is smaller."""
     import matplotlib.pyplot as plt
@@ -116,7 +131,9 @@ def pictures(result: Result) -> str:
     for name, draw in drawings(result).items():
         caption = PICTURES[name]
         cites = cites or re.search(r"\bFigs?\. ", caption)
-        found.append(f'<figure class="picture" id="picture-{name}">{picture(draw, caption)}\n'
+        images = "".join(f'<img class="{scheme}" alt="{html.escape(caption)}" src="{data_of(draw, scheme == "dark")}">'
+                         for scheme in SCHEMES)
+        found.append(f'<figure class="picture" id="picture-{name}">{images}\n'
                      f"<figcaption>{text(caption)} <span class=screen>{code(f'cradle.plot.{name}')}</span></figcaption>"
                      "</figure>\n")
     paper = ("<p class=note>Figures, equations and sections are those of the paper, Zaburdaev and Herminghaus, "
@@ -227,8 +244,3 @@ def provenance(result: Result, version: str) -> Entries:
         yield ("this page by", text(line), "") if not value else (text(name), text(value), "")
     import matplotlib
     yield "pictures", f"matplotlib {text(matplotlib.__version__)}", ""
-
-
-def cite() -> str:
-    return ("<p>The paper for the model, the program together with the scene:</p>\n"
-            + preformatted(beside(os.path.join("..", "cite.bib"))))

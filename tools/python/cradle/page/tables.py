@@ -37,9 +37,8 @@ def means(result: Result) -> str:
     entries = []
     for name in result.series:
         quantity = result.series[name]
-        if isinstance(quantity, Column) or "mean" not in quantity or quantity["mean"].ndim != 1:
-            continue
-        if not np.isfinite(quantity["mean"][-1]):
+        if (isinstance(quantity, Column) or "mean" not in quantity or quantity["mean"].ndim != 1
+                or not np.isfinite(quantity["mean"][-1])):
             continue
         mean, sem, low, high = (quantity[what][-1].item() for what in ("mean", "sem", "min", "max"))
         entries.append((text(name.replace("_", " ")), measured(mean, sem),

@@ -3,6 +3,7 @@
 #include "cradle/tools/commands/commands.hpp"
 #include "cradle/tools/ensemble/ensemble_store.hpp"
 #include "cradle/tools/store/run_files.hpp"
+#include "cradle/tools/theory/cost.hpp"
 
 namespace cradle::tools {
 
@@ -45,7 +46,7 @@ Exit resume(const ResumeArguments& options) {
                files.resumed_from().empty() ? "nothing to continue from, the run begins again"
                                             : "continuing from " + files.resumed_from());
   }
-  return run_command(files, file, options, interrupt);
+  return run_command(files, file, options, interrupt, options.quiet ? "" : expected_warning(files.scene()));
 }
 
 }  // namespace

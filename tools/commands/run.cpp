@@ -20,7 +20,7 @@ std::string summary(const RunOutcome& run, std::uint64_t collisions_before) {
   const int digits = std::clamp(static_cast<int>(run.energy_digits), 1, 10);
   return fmt::format("{}: t = {}, {} collisions, energy {:.{}g}{}, {:.2f} s, {}\n", end_row(run.end).text, run.time,
                      run.collisions, run.energy, digits,
-                     run.energy_digits < 1 ? " (rounding)"
+                     run.energy_digits < 1 ? " (no digit is certain)"
                      : run.may_have_grown  ? " (unless rounding has grown)"
                                            : "",
                      run.seconds,

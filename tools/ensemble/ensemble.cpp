@@ -70,6 +70,16 @@ std::string failure_warning(const EnsembleStates& states, const std::string& fil
   return text;
 }
 
+// What their numbers are of.
+std::string collapsed_note(const EnsembleStates& states) {
+  std::uint64_t collapsed = 0;
+  for (const auto& state : states) collapsed += state->outcomes()[static_cast<std::size_t>(RunEnd::collapsed)];
+  if (collapsed == 0) return "";
+  return fmt::format("{} replicas ended at a collapse: their energy is the one there, and means at later times are of "
+                     "the others\n",
+                     collapsed);
+}
+
 // What a thread of this process works with: it runs replicas in batches, which take a hundredth of a second or longer
 // only if they are a single replica. A kill loses the present batch.
 struct Worker {
@@ -151,6 +161,7 @@ EnsembleOutcome lead(EnsembleStore& store, const EnsembleOptions& options, const
       store.drop_journals();
     end.replicas = store.replicas();
     end.outcome = store.outcome();
+    end.account = collapsed_note(store.states());
     end.warning = failure_warning(store.states(), file);
     if (!end.warning.empty()) end.status = Exit::lost;
   } else {
@@ -192,7 +203,7 @@ EnsembleOutcome run_study(const Study& study, const EnsembleOptions& options, co
   processes.interrupt().heed();
   if (rank != 0) return follow(*store, options, processes);
   EnsembleOutcome end = lead(*store, options, file, processes, jobs);
-  end.account = account;
+  end.account.insert(0, account);
   return end;
 }
 

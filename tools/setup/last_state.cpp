@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "cradle/precision/bin_float.hpp"
 #include "cradle/tools/result/reader.hpp"
 #include "cradle/tools/setup/initial_state.hpp"
 #include "cradle/tools/setup/list_file.hpp"
@@ -102,7 +103,7 @@ void check_particles(const Scene& scene) {
   if (scene.run.precision == Precision::double_)
     initial_particles<double>(scene);
   else
-    initial_particles<long double>(scene);
+    initial_particles<bin_float>(scene);
 }
 
 }  // namespace cradle::tools

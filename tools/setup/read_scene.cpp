@@ -75,7 +75,8 @@ std::string apply_overrides(Entries& entries, const std::vector<std::string>& ov
   expand_time_ranges(entries);
   const auto left_out = drop_times_cut_off(entries);
   if (left_out.empty()) return "";
-  return fmt::format("times of the scene outside the run are left out: {}\n", fmt::join(left_out, ", "));
+  return fmt::format("times of the scene outside the run are left out: {}; --set KEY=[T, ...] gives others\n",
+                     fmt::join(left_out, ", "));
 }
 
 bool has_row_tables(const Entries& entries) {

@@ -43,8 +43,8 @@ def draw_series(result, theory, units, panels):
     replicas = len(result.replicas.get("index", ()))
     left = min((int(counts[-1]) for name, _ in shown if (counts := result.series[name].get("count")) is not None),
                default=replicas)
-    note(axes[0], (f"{replicas} replicas; " if replicas else "") + (f"{left} at the end; " if left < replicas else "")
-         + "line, dark band: mean, standard error; light band: extremes" + ("; orange: spread" if spreads else ""))
+    note(axes[0], (f"{replicas} replicas, " if replicas else "") + (f"{left} at the end, " if left < replicas else "")
+         + "bands: standard error, extremes" + (", orange: spread" if spreads else ""))
     axes[-1].set_xlim(time[0], time[-1])
     for ax, (name, _) in zip(axes, shown):
         band(ax, time, result.series[name], scale.get(name, 1), BLUE, lw=1.2)

@@ -27,6 +27,9 @@ std::uint64_t bits(double x) { return std::bit_cast<std::uint64_t>(x); }
 class Steps : public WithSteps {};
 
 TEST_F(Steps, RowsThatAreStreamed) { expect_same_by_all_laws<Equal>(rshock<double>(1400), {490, 495}, 0.5); }
+TEST_F(Steps, ARowThatIsStreamedOnOneSide) {
+  expect_same_by_all_laws<Unequal>(cold_gas(200, HotPlace::left), {2400, 2600}, 0.25);
+}
 TEST_F(Steps, GasOnALine) { expect_same_by_all_laws<Equal>(gas<double>(800), {1, 100}, 0.5); }
 TEST_F(Steps, GasOnARing) { expect_same_by_all_laws<Equal>(gas<double>(700, 700.), {10, 50}, 0.5); }
 TEST_F(Steps, UnequalMassesOnALine) { expect_same_by_all_laws<Unequal>(gas<double>(700, 0., true), {10, 100}, 0.5); }
@@ -47,24 +50,35 @@ TEST_F(Steps, RingsWithoutCuts) {
   expect_same_on_whole_rings<Equal>(Law(0.999, 1e-5), false);
   expect_same_on_whole_rings<Unequal>(Law(0.9, 0.125), true);
 }
-// Dense and cold around the seam, or at rest there until impulses run over it: what is out of order is found and made
-// again.
-TEST_F(Steps, RingsWithoutCutsThatAreDenseAtTheSeam) {
-  const std::vector<SegmentsAs> ways = on_all_vectors({.anywhere = true}, 1);
-  std::uint64_t in_steps = 0;
-  for (std::uint64_t seed = 1; seed < 6; ++seed) {
+// Dense and cold at both ends, or at rest there until impulses run through: what steps make out of order is found,
+// undone and made again.
+struct DenseAtEnds {
+  std::vector<double> x, v;
+  double end = 0;
+  explicit DenseAtEnds(std::uint64_t seed) {
     std::mt19937_64 random(seed);
-    std::vector<double> x, v;
-    double place = 0;
     for (int i = 0; i < 800; ++i) {
       const bool dense = i < 40 || i >= 760;
-      place += static_cast<double>(1 + (random() >> 40)) * (dense ? 0x1p-30 : 0x1p-23);
-      x.push_back(place);
+      end += static_cast<double>(1 + (random() >> 40)) * (dense ? 0x1p-30 : 0x1p-23);
+      x.push_back(end);
       v.push_back(static_cast<double>(random() >> 40) * (!dense ? 0x1p-23 : seed % 2 == 0 ? 0x1p-27 : 0));
     }
-    in_steps += expect_same_in_steps<Equal>(list(x, v, {}, place + 0x1p-30), Law(1), {5, 20}, ways).in_steps;
+    end += 0x1p-30;
   }
-  EXPECT_GT(in_steps, 10'000U);
+};
+TEST_F(Steps, ThatAreUndoneAtASeamAndAtWalls) {
+  const std::vector<SegmentsAs> ways = on_all_vectors({.anywhere = true}, 1);
+  std::uint64_t on_rings = 0, at_walls = 0;
+  for (std::uint64_t seed = 1; seed < 6; ++seed) {
+    SCOPED_TRACE(seed);
+    const auto [x, v, end] = DenseAtEnds(seed);
+    on_rings += expect_same_in_steps<Equal>(list(x, v, {}, end), Law(1), {5, 20}, ways).in_steps;
+    const Wall<double> left{.position = 0}, right{.position = end, .temperature = 0.1, .seed = 5};
+    const Scene<double> walled = std::make_shared<Walled<double>>(list(x, v), left, right);
+    at_walls += expect_same_in_steps<Equal>(walled, Law(1), {5, 20}, ways).in_steps;
+  }
+  EXPECT_GT(on_rings, 10'000U);
+  EXPECT_GT(at_walls, 10'000U);
 }
 // Restitutions below and above 1/2, any exponents, and speeds over delta that are out of the range of vectors; also as
 // one of several laws, as programs have it.

@@ -168,7 +168,7 @@ template <Real T, class Masses> class GapEnds : public GapPlaces<T, Masses> {
     const Flight<T> from = at_wall(*particles_, wall, since), to = at_wall(*particles_, wall, since + rested);
     const T gained = difference(to.v, from.v);
     const WallMotion<T>* motion = particles_->wall(end)->motion.get();
-    const bool jumps = motion != nullptr && motion->shape() == Shape::sawtooth;  // from under it, at the end
+    const bool jumps = motion != nullptr && motion->jumps();  // from under it, at the end
     const T way = jumps ? T(from.v.value() * rested) : difference(to.x, from.x);
     return {end, T(mass * (gained * (to.v.value() + from.v.value()) / T(2) - a * way)),
             T(mass * (gained - a * rested))};

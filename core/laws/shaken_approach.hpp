@@ -53,9 +53,10 @@ template <Real T> class ShakenApproach {
     }
     case Shape::parabola:
       return on_arcs(time, now);
-    default:
-      return on_sine(time, [&] { return motion_.at(now).rest; }).state;
+    case Shape::sine:
+      break;
     }
+    return on_sine(time, [&] { return motion_.at(now).rest; }).state;
   }
 
   // The next collision; nothing if there is none.
@@ -65,9 +66,10 @@ template <Real T> class ShakenApproach {
       return on_teeth();
     case Shape::parabola:
       return on_arcs();
-    default:
-      return on_sine();
+    case Shape::sine:
+      break;
     }
+    return on_sine();
   }
 
  private:
@@ -100,12 +102,9 @@ template <Real T> class ShakenApproach {
 
   std::optional<WallMeeting<T>> on_teeth() const {
     const T height = motion_.amplitude() + motion_.amplitude(), never = last_chance();
-    T teeth(0);
-    if (const auto free = out_of_reach(T(gap_ + place_), T(closing_ - speed_)))
-      teeth = nearest_whole(T(phase_.rest + motion_.at_turns_of(*free)));
-    else
-      return {};
-    for (;;) {
+    const auto first = out_of_reach(T(gap_ + place_), T(closing_ - speed_));
+    if (!first) return {};
+    for (T teeth = nearest_whole(T(phase_.rest + motion_.at_turns_of(*first)));;) {
       const T jump = (T(1) / T(2) - phase_.rest + teeth) * motion_.period();
       const Approach<T> tooth = straight(T(gap_ + height * teeth), closing_, pull_);
       const auto wait = tooth.meeting();

@@ -52,7 +52,7 @@ template <Real T> class WallApproach {
   WallApproach(const T& gap, const T& closing, const T& pull, const T& splitter, const WallMotion<T>* motion,
                const Pair<T>& since, const std::optional<T>& held, const T& later)
       : straight_(gap, closing, pull, splitter), motion_(motion), rests_(false) {
-    if (motion != nullptr && !(held && motion->shape() == Shape::sawtooth))  // it does not jump while it holds them
+    if (motion != nullptr && !(held && motion->jumps()))  // it does not jump while it holds them
       shaken_.emplace(gap, closing, pull, splitter, *motion, motion->moment(since));
     if (!held) return;
     const T until = is_negative(*held) ? T(0) : *held;
@@ -105,7 +105,7 @@ template <Real T> class WallApproach {
 
   bool rests(const T& time, const Pair<T>& now) const {
     if (!rests_ || !shaken_) return rests_;
-    return motion_->shape() == Shape::sawtooth ? motion_->at(now).whole < tooth_ : !(released_ < time);
+    return motion_->jumps() ? motion_->at(now).whole < tooth_ : !(released_ < time);
   }
   // Rests until the phase `at`. The sine does not press it again before the phase 1/2 - at.
   void let_go(const T& at, const T& pull, const T& splitter, const WallMoment<T>& now) {
@@ -114,7 +114,7 @@ template <Real T> class WallApproach {
     if (is_negative(turns)) turns = phase.rest < T(1) / T(2) - at ? T(0) : T(turns + T(1));
     released_ = turns * motion_->period();
     tooth_ = phase.whole + T(1);
-    const bool jumps = motion_->shape() == Shape::sawtooth;
+    const bool jumps = motion_->jumps();
     const Phase<T> free{jumps ? tooth_ : phase.whole, jumps ? T(T(-1) / T(2)) : at};
     const T open = motion_->shape() == Shape::sine ? T((T(1) / T(2) - (at + at)) * motion_->period()) : T(0);
     const Pair<T> then = now.elapsed + released_;

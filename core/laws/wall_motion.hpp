@@ -48,13 +48,21 @@ template <Real T> class WallMotion {
     turns_per_time_ = quotient(Pair<T>{frequency, T(0)}, circle_.full_turn());
     turns_at_start_ = quotient(Pair<T>{phase, T(0)}, circle_.full_turn());
     const T turns = turns_per_time_.value();
-    fastest_ = amplitude * (shape == Shape::sine ? frequency : T(T(shape == Shape::sawtooth ? 2 : 8) * turns));
-    curving_ = shape == Shape::sine       ? T(fastest_ * frequency)
-               : shape == Shape::parabola ? T(T(4) * fastest_ * turns)
-                                          : T(0);
+    switch (shape) {
+    case Shape::sawtooth:
+      fastest_ = amplitude * T(T(2) * turns), curving_ = T(0);
+      break;
+    case Shape::parabola:
+      fastest_ = amplitude * T(T(8) * turns), curving_ = T(4) * fastest_ * turns;
+      break;
+    case Shape::sine:
+      fastest_ = amplitude * frequency, curving_ = fastest_ * frequency;
+    }
   }
 
   Shape shape() const { return shape_; }
+  // Whether it drops from under a particle that it pressed.
+  bool jumps() const { return shape_ == Shape::sawtooth; }
   const T& amplitude() const { return amplitude_; }
   const T& frequency() const { return frequency_; }
   T period() const { return T(1) / turns_per_time_.value(); }
@@ -109,25 +117,31 @@ template <Real T> class WallMotion {
   // At a phase.
   Displaced<T> at_phase(const T& y) const {
     switch (shape_) {
-    case Shape::sine: {
-      const UnitVector<T> turned = circle_.at_turns(y);
-      return {T(amplitude_ * turned.sin), T(fastest_ * turned.cos), T(-(curving_ * turned.sin))};
-    }
     case Shape::sawtooth:
       return {T(amplitude_ * (y + y)), fastest_, T(0)};
-    default:
+    case Shape::parabola:
       return {T(T(16) * amplitude_ * y * (T(1) / T(2) - magnitude(y))), T(fastest_ * (T(1) - T(4) * magnitude(y))),
               is_negative(y) ? curving_ : T(-curving_)};
+    case Shape::sine:
+      break;
     }
+    const UnitVector<T> turned = circle_.at_turns(y);
+    return {T(amplitude_ * turned.sin), T(fastest_ * turned.cos), T(-(curving_ * turned.sin))};
   }
   // The phase from -1/4 to 1/2 at which it ceases to press a particle of this pull, or drops from under it; nothing if
   // it never does. On the sine this is where sin(2 pi y) = pull/(A omega^2). It is found by bisection, to the last bit:
   // for a small ratio s between s/8 and s/4, since halving towards 0 from afar would take as many steps as the type has
   // exponents.
   std::optional<T> release(const T& pull) const {
-    if (shape_ == Shape::sawtooth) return T(1) / T(2);
-    if (!(pull < curving_)) return {};
-    if (shape_ == Shape::parabola || pull == T(0)) return T(0);
+    if (!jumps() && !(pull < curving_)) return {};
+    switch (shape_) {
+    case Shape::sawtooth:
+      return T(1) / T(2);
+    case Shape::parabola:
+      return T(0);
+    case Shape::sine:
+      if (pull == T(0)) return T(0);
+    }
     const T quarter = T(1) / T(4), ratio = pull / curving_;
     T low = -quarter, high = quarter;
     if (magnitude(ratio) < T(1) / T(1 << 30)) {

@@ -77,11 +77,11 @@ template <Real T> struct CollapseWatch {
     return least / T(64);
   }
 
-  // Records the collision at slot s, which has left a small gap beside it. Returns true if its collapse is settled and
+  // Records the collision at slot s, which has left a small gap beside it. Returns whether its collapse is settled and
   // has been followed for long enough. `local` is its time as an offset, which resolves intervals that the full time
   // does not; `collisions` is the number of all collisions.
   template <class Law, class Chain>
-  bool settled(const Law& law, const Chain& chain, Slot s, const T& local, std::uint64_t collisions) {
+  bool record(const Law& law, const Chain& chain, Slot s, const T& local, std::uint64_t collisions) {
     const ParticleIndex particle = chain.particle(s);
     const Pair<T> now = chain.stamp(local);
     const auto before = last.find(particle);
@@ -108,7 +108,7 @@ template <Real T> struct CollapseWatch {
     return false;
   }
 
-  // Whether the gap left beside the collision at slot s, judged before, ends the run of many particles although no
+  // Whether the gap left beside the collision at slot s, recorded before, ends the run of many particles although no
   // collapse is proved there.
   template <class Chain> bool ends_unproved(const Chain& chain, Slot s, const T& gap) const {
     if constexpr (in_gaps<Chain>)

@@ -59,7 +59,7 @@ template <Real T> struct Pacing {
     if (moved) collisions_at_move = collisions;
     if (in_epochs) {
       if (moved) begin_epoch(collisions, now, active);
-      return passed(collisions, active);
+      return set_next_review(collisions, active);
     }
     if (!moved && !regular) return;
     begin_reviews(collisions, now, active);
@@ -75,8 +75,9 @@ template <Real T> struct Pacing {
   std::uint64_t left(std::uint64_t collisions) const {
     return collisions < most_collisions ? most_collisions - collisions : 0;
   }
-  // After so many collisions without a review, fewer than an epoch can have.
-  void passed(std::uint64_t collisions, std::uint64_t active) {
+  // In an epoch: sets the next review, by when the caller is to be polled, after so many collisions. These are fewer
+  // than the epoch may have.
+  void set_next_review(std::uint64_t collisions, std::uint64_t active) {
     if (collisions >= next_poll) next_poll = collisions + std::min<std::uint64_t>(32 * active, 1 << 20);
     next_review = std::min(most_collisions, next_poll);
   }
@@ -86,7 +87,7 @@ template <Real T> struct Pacing {
     collisions_at_move = collisions;
     if (!in_epochs) return begin_reviews(collisions, now, active);
     begin_epoch(collisions, now, active);
-    passed(collisions, active);
+    set_next_review(collisions, active);
   }
 
   // Whether it can be the pacing of a run with so many particles and collisions, the last one at the given local time
@@ -160,15 +161,15 @@ template <Real T> struct Standstill {
     return std::tie(self.time, self.elapsed, self.collisions_then, self.collisions_at_elapsed);
   }
 
-  // Called at a review with local time, time since the start, collisions made and active particles. `shrinks` says that
-  // the last collision was with a floor, and that the run stops when a rebound from it is small enough: absolute times
-  // do not resolve rebounds, but their heights are known.
+  // Whether time stands still; asked at a review, with local time, time since the start, collisions made and active
+  // particles. `shrinks` says that the last collision was with a floor, and that the run stops when a rebound from it
+  // is small enough: absolute times do not resolve rebounds, but their heights are known.
   bool at(const T& now, const T& since_start, std::uint64_t collisions, std::uint64_t active, bool shrinks = false) {
     if (now > time) collisions_then = collisions;
     if (since_start > elapsed) elapsed = since_start, collisions_at_elapsed = collisions;
-    const std::uint64_t long_ones = (1 << 20) + 4096 * active * active;
-    return collisions - collisions_then > (threshold_ || shrinks ? long_ones : 64 + 4 * active * active) ||
-           collisions - collisions_at_elapsed > times_ * long_ones;
+    const std::uint64_t larger_bound = (1 << 20) + 4096 * active * active;
+    return collisions - collisions_then > (threshold_ || shrinks ? larger_bound : 64 + 4 * active * active) ||
+           collisions - collisions_at_elapsed > times_ * larger_bound;
   }
   // An epoch has ended; its local time is now called `now`.
   void epoch_ended(const T& now, const T& since_start, std::uint64_t collisions) {

@@ -159,7 +159,7 @@ requires(StepNumbers<T>::template by_law<Law> && !Watched<Masses>) struct Steppe
   }
   void set_inner() {
     line_.inner_first = static_cast<std::uint32_t>(part_->inner_first_ - Part::first());
-    line_.inner = static_cast<std::uint32_t>(part_->inner_);
+    line_.inner_count = static_cast<std::uint32_t>(part_->inner_count_);
   }
 
   // The event loop's collision, on the cells, where all that is not plain is refused. Lags stay as they are, and are

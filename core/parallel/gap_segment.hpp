@@ -1,6 +1,6 @@
 #pragma once
 // A segment's part of the chain in gaps and closing speeds (segments.hpp). A collision at the gap i reads and changes
-// the gaps i - 1, i and i + 1. At a cut it is logged by which gap it was at, exact time and closing speed.
+// the gaps i - 1, i and i + 1. A collision beside a cut is logged: its gap, exact time and closing speed.
 
 #include <algorithm>
 #include <tuple>
@@ -163,12 +163,12 @@ template <Real T, class Masses> class GapSegment {
       return wall_gaps_.strike_wall(walls_, gap, own, closing_when_due(s), mass, elapsed);
     });
   }
-  // Where anything falls or is shaken, collisions at walls and beside gaps to them are others.
+  // Where anything falls or is shaken, collisions at walls and beside gaps to them have rules of their own.
   CollisionResult<T> strike_at_edge(Slot p, Slot s, Slot n, const T& time, const Outcome<T>& outcome, Notice notice) {
     if (!wall_gaps_.anywhere()) return line_.strike(p, s, n, time, outcome, notice);
     return wall_gaps_.strike(line_, p, s, n, time, outcome, notice, 0, [] { return Notice::none; });
   }
-  // A collision that may be at a cut or a front, or beyond.
+  // Logs a collision that is beside a cut, moves a front that it is at, and says whether its gap is the segment's own.
   [[gnu::noinline]] Edge at_edge(Slot s, const T& time, const Outcome<T>& outcome, Report& report) {
     const T closing = closing_when_due(s);
     Notice notice = Notice::none;

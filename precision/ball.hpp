@@ -112,12 +112,12 @@ template <class M> class Ball {
   }
   // The radius is infinite if the divisor may be 0.
   friend Ball operator/(const Ball& x, const Ball& y) {
-    const Ball quotient = quotient_by_positive(x, y);
+    const Ball quotient = quotient_by_nonzero(x, y);
     if (!(y.least_size() > 0)) return {quotient.middle_, std::numeric_limits<Radius>::infinity()};
     return quotient;
   }
-  // The same where the divisor is certainly not 0; else it means nothing.
-  friend Ball quotient_by_positive(const Ball& x, const Ball& y) {
+  // As x / y, but it means nothing unless y is certainly not 0.
+  friend Ball quotient_by_nonzero(const Ball& x, const Ball& y) {
     M middle = x.middle_ / y.middle_;
     const Radius least = y.least_size(), size = Of::size(middle);
     return {middle, up((x.radius_ + size * y.radius_) / least + Of::quotient_error() * size * (1 + y.radius_ / least) +

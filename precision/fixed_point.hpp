@@ -1,6 +1,6 @@
 #pragma once
 // Binary fixed point with 64 bits before the point and 384 behind it: sums of doubles, exactly, and their decimals, in
-// a tenth of the time that binary floating point of such a width takes. What does not fit there gives nothing.
+// a tenth of the time that binary floating point of such a width takes. A number that does not fit is refused.
 
 #include <algorithm>
 #include <array>
@@ -25,8 +25,8 @@ class FixedPoint {
       if (!total.add(x)) return {};
     return total;
   }
-  /// Of a literal of digits with at most one point, which may have an exponent. Rounded downwards by less than 2 units
-  /// of 2^-384 if it is not `exact`.
+  /// The number of a literal: digits with at most one point, and perhaps an exponent. Rounded downwards by less than 2
+  /// units of 2^-384 if it is not `exact`.
   static std::optional<FixedPoint> decimal(std::string_view literal, bool& exact) {
     int power = 0;
     if (const auto e = literal.find_first_of("eE"); e != literal.npos) {
@@ -91,11 +91,11 @@ class FixedPoint {
     return std::ldexp(static_cast<double>(leading | more), static_cast<int>(shift) - fraction_bits);
   }
 
-  /// Takes the leading digits of a number that is not negative; what is left is in units of the last one.
   struct Digits {
     std::string digits;
     int exponent;  // of ten, of the first one
   };
+  /// Takes `count` leading digits out of a number that is not negative; what is left is a fraction of the last of them.
   std::optional<Digits> take_leading(std::size_t count) {
     Digits all{};
     std::uint64_t& whole = limbs_[limbs - 1];
@@ -123,7 +123,7 @@ class FixedPoint {
 
  private:
   static constexpr std::size_t limbs = 7, most_digits = 120;
-  static constexpr int fraction_bits = 384, chunk = 18;  // digits at once
+  static constexpr int fraction_bits = 384, chunk = 18;  // chunk: digits at once
   using Limbs = std::array<std::uint64_t, limbs>;
   __extension__ using Wide = unsigned __int128;
 

@@ -1,6 +1,6 @@
 #pragma once
-// The list of scalar types, and the conversion of a name to a type. A new type needs a header and a line in the list:
-// the build reads the lines, each a type and its header, and compiles the engine once per type.
+// The list of scalar types, and the conversion of a name to a type. A new type needs its #include and a line in the
+// list: the build reads the lines, each a type and its header, and compiles the engine once per type.
 
 #include <cstddef>
 #include <stdexcept>

@@ -24,9 +24,9 @@ template <class N>
 concept SideBySide = Enclosing<N> && requires(const N x, const std::array<double, N::doubles> of) {
   { x.in_doubles() } -> std::same_as<std::array<double, N::doubles>>;
   { N::of_doubles(of) } -> std::same_as<N>;
-  { certainly_positive(x) } -> std::same_as<bool>;    // is_positive
-  { less_in_doubles(x, x) } -> std::same_as<bool>;    // order_in_doubles is Order::less
-  { quotient_by_positive(x, x) } -> std::same_as<N>;  // x / y; means nothing where y is not certainly positive
+  { certainly_positive(x) } -> std::same_as<bool>;   // is_positive
+  { less_in_doubles(x, x) } -> std::same_as<bool>;   // order_in_doubles is Order::less
+  { quotient_by_nonzero(x, x) } -> std::same_as<N>;  // x / y; means nothing where y may be 0
 };
 
 // Collisions of identical particles that bounce, `most` of them at a time, and what comes of them.
@@ -50,7 +50,7 @@ template <SideBySide N> class Bounces<N> {
     N cutoff = cutoff_;
     for (std::size_t k = 0; k < count; ++k) {
       N l = left_place_[k], r = right_place_[k], lv = left_velocity_[k], rv = right_velocity_[k];
-      N closing = lv - rv, apart = l - r, time = -quotient_by_positive(apart, closing);
+      N closing = lv - rv, apart = l - r, time = -quotient_by_nonzero(apart, closing);
       const bool below = less_in_doubles(closing, cutoff), above = less_in_doubles(cutoff, closing);
       const bool later = less_in_doubles(left_changed_[k], time) & less_in_doubles(right_changed_[k], time);
       auto places = N::combined(l, r, apart, share, share), velocities = N::combined(lv, rv, closing, share, share);

@@ -4,8 +4,9 @@
 // and reports its result; the loop decides which collision is next.
 //
 // Slots number the gaps from left to right; the held ones are first() to last(), and there are two empty ones at either
-// end. Local times represent times of the scene inside the chain: offsets from an origin that moves, or the times
-// themselves. A local time is valid until the origin moves.
+// end. (In `ClusterChain` they are cells, some of them vacant; the last one of a line has no gap.) Local times
+// represent times of the scene inside the chain: offsets from an origin that moves, or the times themselves. A local
+// time is valid until the origin moves.
 
 #include <concepts>
 #include <cstddef>
@@ -22,10 +23,10 @@ namespace cradle {
 // The requests of a chain to the event loop after a collision, handled off the hot path: a set, named by what to do.
 enum class Notice : unsigned {
   none = 0,
-  origin_should_move = 1,  // the flight before the collision was short: 2^-20 of the time since the origin
-  origin_must_move = 2,    // so short, 2^-40, that time loses digits unless the origin moves now
+  origin_should_move = 1,  // the flight before the collision was shorter than 2^-20 of the time since the origin
+  origin_must_move = 2,    // shorter than 2^-40 of it: time loses digits unless the origin moves now
   gap_below_floor = 4,     // the collision left a neighbouring gap below the floor (collapse, or a gap that has closed)
-  needs_slots = 8          // the chain has no slot for the next particle of a row: lay it out anew
+  needs_slots = 8          // lay the chain out anew: no slot is left for the next particle of a row, or many are vacant
 };
 
 constexpr Notice operator|(Notice a, Notice b) {
@@ -78,8 +79,8 @@ concept Chain = Real<typename C::Scalar> && requires(const C chain, C changing, 
   { chain.particle(s) } -> std::same_as<ParticleIndex>;
   { chain.on_ring() } -> std::same_as<bool>;
 
-  // Closing speed; local time of the next collision of a gap that is closing; the same as queue time, `never` if it
-  // opens.
+  // Closing speed; local time of the next collision of a gap that is closing; that time as a queue time, or `never` if
+  // the gap opens.
   { chain.closing(s) } -> std::convertible_to<typename C::Scalar>;
   { chain.due(s) } -> std::convertible_to<typename C::Scalar>;
   { chain.queue_due(s) } -> std::same_as<double>;
@@ -89,9 +90,9 @@ concept Chain = Real<typename C::Scalar> && requires(const C chain, C changing, 
   { chain.falls() } -> std::same_as<bool>;
   { chain.rebound(s) } -> std::same_as<std::optional<Rebound<typename C::Scalar>>>;
 
-  // Collisions after which a neighbouring gap is below the floor are noticed. The smaller gap beside the last collision
-  // at its time, far away beyond an end; the least difference of two collision times that is resolved; what could not
-  // be resolved.
+  // Sets the gap floor: collisions that leave a smaller gap beside them are noticed. Reads the smaller gap beside the
+  // last collision, at its time (a gap beyond an end is far away); the least difference of two collision times that is
+  // resolved; the account of what could not be resolved.
   changing.set_floor(time);
   { chain.nearest_gap(s) } -> std::convertible_to<typename C::Scalar>;
   { chain.time_resolution(s, time) } -> std::convertible_to<typename C::Scalar>;
@@ -126,7 +127,7 @@ template <Chain C> typename C::Scalar smallest_gap(const C& chain) {
   return least;
 }
 
-// A chain that requests slots (Notice::needs_slots) when it takes in particles. Slots are renumbered then.
+// A chain that requests to be laid out anew (Notice::needs_slots). Slots are renumbered then.
 template <class C>
 concept StreamingChain = Chain<C> && requires(C chain) {
   chain.make_room();

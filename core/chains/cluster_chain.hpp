@@ -23,7 +23,7 @@ struct CellsInARow {
   std::size_t count;
 };
 
-// A front after a held range: its slot, and how many particles of the row beyond it have been taken in.
+// A front after a time slab: its slot, and how many particles of the row beyond it have been taken in.
 struct ClusterFront {
   Slot slot = 0;
   ParticleIndex taken = 0;
@@ -123,7 +123,7 @@ template <Real T> class ClusterChain : public ClusterPlaces<T> {
   Cell<T> undisturbed_cell(ParticleIndex b) const {
     return load(b, this->local_time(this->start()), b + 1 < particles_->count());
   }
-  // Replaces the cells by those of a held range, and enters the mass that crossed the seam, collision by collision.
+  // Replaces the cells by those after a time slab, and enters the mass that crossed the seam, collision by collision.
   void continue_with(typename Line::Gaps& after, std::vector<CellsInARow> cells, const std::vector<T>& carried,
                      const ClusterFront& on_left, const ClusterFront& on_right) {
     line_.gaps.swap_gaps(after);

@@ -1,6 +1,6 @@
 #pragma once
 // The ends of the active zone of a chain in gaps and closing speeds: how the chain takes in the particles that its
-// fronts reach, collision by collision or, after a held range (segments.hpp), all at once; how it makes slots for them;
+// fronts reach, collision by collision or, after a time slab (segments.hpp), all at once; how it makes slots for them;
 // and what walls give to particles that rest on them.
 //
 // While a particle is carried from x, v to x', v' in the time t, the wall gives it the momentum m (v' - v - a t) and
@@ -11,7 +11,7 @@
 
 namespace cradle {
 
-// How the front at one end of a line has moved in a held range (segments.hpp): the outermost slot with a collision, and
+// How the front at one end of a line has moved in a time slab (segments.hpp): the outermost slot with a collision, and
 // the collisions at the last gap of the line, with the velocity that each gave to the last particle.
 template <Real T> struct FrontMove {
   struct AtEnd {
@@ -30,7 +30,7 @@ template <Real T, class Masses> class GapEnds : public GapPlaces<T, Masses> {
   using Places::falls, Places::clock, Places::slots, Places::first, Places::last, Places::on_ring, Places::particle;
   using typename Places::Line;
 
-  // Replaces the gaps by those of a held range, in the same slots and in those that the fronts have reached.
+  // Replaces the gaps by those after a time slab, in the same slots and in those that the fronts have reached.
   void continue_with(typename Line::Gaps& after, const FrontMove<T>& to_left, const FrontMove<T>& to_right) {
     line_.gaps.swap_gaps(after);
     if (on_ring()) return;

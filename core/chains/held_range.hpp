@@ -83,7 +83,7 @@ class HeldRange {
   // ---- of a front
   Beyond beyond_left(Slot s) const { return s != first_ ? Beyond::held : row_or_nothing(unheld_left_); }
   Beyond beyond_right(Slot s) const { return s != last_ ? Beyond::held : row_or_nothing(unheld_right_); }
-  // Changes the held range to other slots, and fewer.
+  // From now on the held slots are those from `first` to `last`.
   void hold(Slot first, Slot last) { first_ = first, last_ = last; }
   // Takes in the next particle of a row, in the slot next to the last held one; returns its number, of `count`
   // particles in all.
@@ -95,7 +95,7 @@ class HeldRange {
     ++last_;
     return count - unheld_right_--;
   }
-  // After a held range (segments.hpp): so many have been taken in, and the fronts are there.
+  // After a time slab (segments.hpp): so many particles have been taken in on either side; where the fronts are then.
   void take_in(ParticleIndex left, ParticleIndex right) { unheld_left_ -= left, unheld_right_ -= right; }
   void place_fronts(Slot left, Slot right) { front_left_ = left, front_right_ = right; }
   // The particle at `gone` becomes part of the one at `s` on its left; `next` is on its right.
@@ -109,8 +109,8 @@ class HeldRange {
     return std::tie(self.extent_, self.first_, self.last_, self.front_left_, self.front_right_, self.unheld_left_,
                     self.unheld_right_);
   }
-  // Whether it can be the range of a chain with so many slots, which hold all of the `count` particles but the unheld
-  // ones, or some.
+  // Whether it can be the range of a chain with so many slots. They hold all of the `count` particles but the unheld
+  // ones or, after mergers, fewer.
   bool fits(std::size_t slots, ParticleIndex count) const {
     const bool held = last_ < slots && slots - 1 - last_ >= spare_ && first_ >= spare_ && last_ + 1 >= first_;
     const bool fronts = has_fronts() ? first_ <= front_left_ && front_left_ <= front_right_ && front_right_ <= last_

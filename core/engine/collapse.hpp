@@ -1,7 +1,7 @@
 #pragma once
-// Inelastic collapse. README.md (Collapse) says what a run does about it, when a collapse is settled, that is proved,
-// how far it is then followed, and where more than `few` particles stop without a proof. (Gaps shrink by 2^60 and more
-// before particles that are squeezed between clusters part.)
+// Inelastic collapse. README.md (Collapse) says what a run does about it, when a collapse is settled (proved), how far
+// it is then followed, and where more than `few` particles stop without a proof: at gaps that have shrunk by 2^100,
+// since particles that are squeezed between clusters can part after gaps have shrunk by 2^60 and more.
 
 #include <algorithm>
 #include <cstdint>
@@ -39,7 +39,7 @@ template <class T, class Time = Pair<T>> struct CollapseReport {
 
 // The proved collapse of two neighbouring gaps, with the best bounds known.
 template <Real T> struct KnownCollapse {
-  std::uint64_t collisions = 0;  // noticed there since then
+  std::uint64_t collisions = 0;  // recorded at these two gaps since it was found
   Pair<T> time;
   T uncertainty{0}, ratio{0}, ratio_uncertainty{0};
   static auto state(auto& self) {
@@ -77,11 +77,11 @@ template <Real T> struct CollapseWatch {
     return least / T(64);
   }
 
-  // Records the collision at slot s, which has left a small gap beside it. Returns true if its collapse is settled and
+  // Records the collision at slot s, which has left a small gap beside it. Returns whether its collapse is settled and
   // has been followed for long enough. `local` is its time as an offset, which resolves intervals that the full time
   // does not; `collisions` is the number of all collisions.
   template <class Law, class Chain>
-  bool settled(const Law& law, const Chain& chain, Slot s, const T& local, std::uint64_t collisions) {
+  bool record(const Law& law, const Chain& chain, Slot s, const T& local, std::uint64_t collisions) {
     const ParticleIndex particle = chain.particle(s);
     const Pair<T> now = chain.stamp(local);
     const auto before = last.find(particle);
@@ -93,7 +93,7 @@ template <Real T> struct CollapseWatch {
     for (const auto& gap : {left_of(chain, s), std::optional(s), right_of(chain, s)})
       if (gap) moves_at(chain.closing(*gap));
     if constexpr (ScaleFreeLaw<Law> && provable<Chain>)
-      if (law.scale_free() && !chain.falls()) {
+      if (law.scale_free() && !chain.falls()) {  // the theorem is of gaps that are straight lines in time
         if constexpr (in_gaps<Chain>)
           if (errors.kept()) errors.collision(law, chain, left_of(chain, s), s, right_of(chain, s), local);
         for (const bool on_left : {true, false})
@@ -108,7 +108,7 @@ template <Real T> struct CollapseWatch {
     return false;
   }
 
-  // Whether the gap left beside the collision at slot s, judged before, ends the run of many particles although no
+  // Whether the gap left beside the collision at slot s, recorded before, ends the run of many particles although no
   // collapse is proved there.
   template <class Chain> bool ends_unproved(const Chain& chain, Slot s, const T& gap) const {
     if constexpr (in_gaps<Chain>)
@@ -124,14 +124,13 @@ template <Real T> struct CollapseWatch {
   }
 
  private:
-  // Exact types have no square roots, and chains of particles that merge do not need them. Under gravity the theorem
-  // does not hold for gaps to walls.
+  // Whether collapses are proved: not in exact types, which have no square roots, nor where particles merge.
   template <class Chain>
   static constexpr bool provable = !std::numeric_limits<T>::is_exact && requires(const Chain& chain) {
     chain.particles();
   };
 
-  // Other chains compute with positions and derive gaps from them.
+  // Whether such a chain keeps gaps; the other one derives them from positions.
   template <class Chain> static constexpr bool in_gaps = provable<Chain>&& requires(const Chain& chain) {
     chain.line();
   };
@@ -210,7 +209,7 @@ template <Real T> struct CollapseWatch {
       return steps * chain.time_resolution(s, local) / T(2);
   }
 
-  // Whether no other particle can arrive before the collapse. A gap that is not held yet does not count.
+  // Whether no other particle can arrive before the collapse; no, if a gap beside the two is not held yet.
   template <class Chain>
   bool alone(const Chain& chain, Slot left, Slot right, const Bounded<T>& ahead, const T& local) const {
     const T reach = T(2) * greatest_approach * (ahead.value + ahead.error);

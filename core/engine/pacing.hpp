@@ -2,12 +2,12 @@
 // `Pacing` decides how often the event loop does work other than collisions, and when the origin of time moves, by the
 // history of collisions alone: README.md (When the origin of time moves) says what for.
 //
-// In a small zone reviews come after numbers of collisions. The origin moves with every second collision in a
-// few-particle collapse, and otherwise after about 32 collisions per particle.
+// In a small zone of n active particles regular reviews come after n^2/8 + 1 collisions, or after 32 n + 16 if these
+// are fewer (from 257 particles on). If particles can collapse, the origin moves at each of them.
 //
 // In a large zone time is divided into epochs. An epoch lasts for about 8 collisions per active particle, or 32 if
 // particles merge, estimated from the rate of the previous epoch. It ends early after a collision at which the chain
-// requests that, or after four times the expected collisions per particle.
+// says that the origin must move, or after four times as many collisions per particle as it was made for.
 
 #include <algorithm>
 #include <cstdint>
@@ -34,11 +34,11 @@ template <Real T> struct Pacing {
   T epoch_end{0};                     // local
   std::uint64_t expected = 0;         // collisions in the epoch
   std::uint64_t next_poll = 0;        // number of collisions at which the caller is polled again
-  std::uint64_t most_collisions = 0;  // number of collisions at which it ends at the latest
+  std::uint64_t most_collisions = 0;  // number of collisions at which the epoch ends at the latest
 
   // Decides after a collision at the given local time, with so many active particles. The chain may request a move. At
-  // a regular review the origin moves if particles can collapse. If they merge instead, it moves only after many
-  // collisions, or if their rate since the last review is more than twice that since the last move.
+  // a regular review the origin moves if particles can collapse or the zone is large (epochs then begin), otherwise
+  // only after many collisions, or if their rate since the last review is more than twice that since the last move.
   bool origin_moves(Notice notice, std::uint64_t collisions, const T& time, std::uint64_t active) const {
     const std::uint64_t since_move = collisions - collisions_at_move;
     if (includes(notice, Notice::origin_must_move)) return true;
@@ -59,7 +59,7 @@ template <Real T> struct Pacing {
     if (moved) collisions_at_move = collisions;
     if (in_epochs) {
       if (moved) begin_epoch(collisions, now, active);
-      return passed(collisions, active);
+      return set_next_review(collisions, active);
     }
     if (!moved && !regular) return;
     begin_reviews(collisions, now, active);
@@ -75,8 +75,8 @@ template <Real T> struct Pacing {
   std::uint64_t left(std::uint64_t collisions) const {
     return collisions < most_collisions ? most_collisions - collisions : 0;
   }
-  // After so many collisions without a review, fewer than an epoch can have.
-  void passed(std::uint64_t collisions, std::uint64_t active) {
+  // In an epoch, after so many collisions (fewer than it may have): sets the next review and when the caller is polled.
+  void set_next_review(std::uint64_t collisions, std::uint64_t active) {
     if (collisions >= next_poll) next_poll = collisions + std::min<std::uint64_t>(32 * active, 1 << 20);
     next_review = std::min(most_collisions, next_poll);
   }
@@ -86,13 +86,13 @@ template <Real T> struct Pacing {
     collisions_at_move = collisions;
     if (!in_epochs) return begin_reviews(collisions, now, active);
     begin_epoch(collisions, now, active);
-    passed(collisions, active);
+    set_next_review(collisions, active);
   }
 
   // Whether it can be the pacing of a run with so many particles and collisions, the last one at the given local time
   // and time since the start, up to rounding. If the next review were too far ahead, the run could not be interrupted.
   bool follows(std::uint64_t collisions, const T& last_collision, const T& since_start, std::int64_t particles) const {
-    constexpr std::uint64_t most = std::uint64_t{1} << 50;  // in a year; 4096 times this is still an integer
+    constexpr std::uint64_t most = std::uint64_t{1} << 50;  // more than in a year; 4096 times this fits 64 bits
     return collisions < most && collisions_before <= collisions && collisions_at_move <= collisions &&
            expected < most &&
            std::max({next_review, next_poll, most_collisions}) <=
@@ -108,7 +108,7 @@ template <Real T> struct Pacing {
 
  private:
   // Sets the length of the next epoch if so many collisions have taken so long: the time expected for its collisions,
-  // but limited, since a few collisions do not give a reliable rate.
+  // but limited, since a few collisions do not give a reliable rate. Without a positive length there is no epoch.
   void foresee(const T& took, std::uint64_t collisions, std::uint64_t active) {
     const auto aim = static_cast<std::int64_t>(per_particle_ * active), made = static_cast<std::int64_t>(collisions);
     const std::int64_t most = made < 64 ? 64 : 4096;
@@ -160,15 +160,15 @@ template <Real T> struct Standstill {
     return std::tie(self.time, self.elapsed, self.collisions_then, self.collisions_at_elapsed);
   }
 
-  // Called at a review with local time, time since the start, collisions made and active particles. `shrinks` says that
-  // the last collision was with a floor, and that the run stops when a rebound from it is small enough: absolute times
-  // do not resolve rebounds, but their heights are known.
+  // Whether time stands still; asked at a review, with local time, time since the start, collisions made and active
+  // particles. `shrinks` says that the last collision was with a floor, and that the run stops when a rebound from it
+  // is small enough: absolute times do not resolve rebounds, but their heights are known.
   bool at(const T& now, const T& since_start, std::uint64_t collisions, std::uint64_t active, bool shrinks = false) {
     if (now > time) collisions_then = collisions;
     if (since_start > elapsed) elapsed = since_start, collisions_at_elapsed = collisions;
-    const std::uint64_t long_ones = (1 << 20) + 4096 * active * active;
-    return collisions - collisions_then > (threshold_ || shrinks ? long_ones : 64 + 4 * active * active) ||
-           collisions - collisions_at_elapsed > times_ * long_ones;
+    const std::uint64_t larger_bound = (1 << 20) + 4096 * active * active;
+    return collisions - collisions_then > (threshold_ || shrinks ? larger_bound : 64 + 4 * active * active) ||
+           collisions - collisions_at_elapsed > times_ * larger_bound;
   }
   // An epoch has ended; its local time is now called `now`.
   void epoch_ended(const T& now, const T& since_start, std::uint64_t collisions) {

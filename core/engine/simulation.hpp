@@ -168,7 +168,7 @@ class Simulation : public Readings<Chain> {
       if (slab->counts.collisions > 0) last_collision_ = slab->last_collision;
       if (!(end < target_.horizon)) return status_;
       from = end == target_.stop ? end_epoch() : end;
-      pacing_.passed(counts_.collisions, active());
+      pacing_.set_next_review(counts_.collisions, active());
       status_ = policy_.poll(last_collision_time(), counts_);
       if (status_ != Status::reached) return status_;
     }
@@ -265,7 +265,7 @@ class Simulation : public Readings<Chain> {
   // Whether the gap left beside the last collision, at slot s, ends the run.
   Status judge(Slot s) {
     const bool watched = policy_.collapse == CollapsePolicy::stop;
-    const bool followed = watched && watch_.settled(law_, chain_, s, last_collision_, counts_.collisions);
+    const bool followed = watched && watch_.record(law_, chain_, s, last_collision_, counts_.collisions);
     const T gap = chain_.nearest_gap(s);
     if (watched && !policy_.follows_a_gap() && watch_.ends_unproved(chain_, s, gap)) return Status::collapsed;
     return policy_.after(gap, chain_.rebound(s), watched && watch_.report.settled, followed);

@@ -37,8 +37,8 @@ template <Real T> class Particles {
 
   virtual const Wall<T>* wall(End) const { return nullptr; }
   bool walled() const { return wall(End::left) != nullptr || wall(End::right) != nullptr; }
-  // Whether walls can give energy: one moves or is thermal.
-  bool driven() const { return walls().give_energy(); }
+  // One of them moves or is thermal.
+  bool walls_give_energy() const { return walls().give_energy(); }
   Walls<T> walls() const { return {wall(End::left), wall(End::right), count()}; }
   // The wall with a particle's number; null if it is none.
   const Wall<T>* wall_at(ParticleIndex particle) const {
@@ -125,7 +125,8 @@ template <Real T> class Particles {
   // since the potential energy is least with all particles there. Without one, particles fall for the time t, and
   // (sqrt(E) + sqrt(M/2) a t)^2 <= 2 E + M a^2 t^2.
   T most_kinetic_energy(const T& elapsed) const {
-    const T energy = driven() ? T(kinetic_energy() + energy_to_lose()) : T(kinetic_energy() + energy_of_fall());
+    const T energy =
+        walls_give_energy() ? T(kinetic_energy() + energy_to_lose()) : T(kinetic_energy() + energy_of_fall());
     if (!fall() || floor() != nullptr) return energy;
     const T speed = acceleration() * elapsed;
     return T(2) * energy + total_mass() * (speed * speed);

@@ -156,9 +156,9 @@ GuardCheck<T> guarded(const Configuration<T>& c, const Particles<T>& particles, 
   const T rest = all ? T(0) : T(start_energy - before.twice.value() / T(2));
   const T epsilon = std::numeric_limits<T>::epsilon();
   const T delta = detail::guard_unit(particles, collisions);
-  const bool driven = particles.driven();
+  const bool walls_give_energy = particles.walls_give_energy();
   const T twice_energy = T(2) * particles.most_kinetic_energy(elapsed);
-  const bool bounded_by_start = particles.identical_masses() && !driven && !fall;
+  const bool bounded_by_start = particles.identical_masses() && !walls_give_energy && !fall;
   const T top_speed = bounded_by_start ? before.fastest : root_above(T(twice_energy / particles.least_mass()));
   const T all_as_one = root_above(T(twice_energy * mass));  // no momentum is larger
 

@@ -1,6 +1,6 @@
 #pragma once
 // A segment's part of the chain in gaps and closing speeds (segments.hpp). A collision at the gap i reads and changes
-// the gaps i - 1, i and i + 1. At a cut it is logged by which gap it was at, exact time and closing speed.
+// the gaps i - 1, i and i + 1. A collision beside a cut is logged: its gap, exact time and closing speed.
 
 #include <algorithm>
 #include <tuple>
@@ -98,7 +98,7 @@ template <Real T, class Masses> class GapSegment {
   [[gnu::always_inline]] OwnedResult<T> collide(const Law& law, Slot s, const T& time, Report& report) {
     Outcome<T> outcome = law(line_.closing(s), line_.masses.of_pair(s));
     Edge edge;
-    if (!(s - inner_first_ < inner_)) [[unlikely]] {
+    if (!(s - inner_first_ < inner_count_)) [[unlikely]] {
       if (walls_.beside(line_.particle(s))) outcome = at_wall(law, s, time);
       edge = at_edge(s, time, outcome, report);
       if (wall_gaps_.anywhere()) return {strike_at_edge(s - 1, s, s + 1, time, outcome, edge.notice), edge.own};
@@ -163,12 +163,12 @@ template <Real T, class Masses> class GapSegment {
       return wall_gaps_.strike_wall(walls_, gap, own, closing_when_due(s), mass, elapsed);
     });
   }
-  // Where anything falls or is shaken, collisions at walls and beside gaps to them are others.
+  // Where anything falls or is shaken, collisions at walls and beside gaps to them have rules of their own.
   CollisionResult<T> strike_at_edge(Slot p, Slot s, Slot n, const T& time, const Outcome<T>& outcome, Notice notice) {
     if (!wall_gaps_.anywhere()) return line_.strike(p, s, n, time, outcome, notice);
     return wall_gaps_.strike(line_, p, s, n, time, outcome, notice, 0, [] { return Notice::none; });
   }
-  // A collision that may be at a cut or a front, or beyond.
+  // Logs a collision that is beside a cut, moves a front that it is at, and says whether its gap is the segment's own.
   [[gnu::noinline]] Edge at_edge(Slot s, const T& time, const Outcome<T>& outcome, Report& report) {
     const T closing = closing_when_due(s);
     Notice notice = Notice::none;
@@ -194,13 +194,13 @@ template <Real T, class Masses> class GapSegment {
     return {(left_end_ || s >= own_first_) && (right_end_ || s <= own_last_), notice};
   }
   void set_inner() {
-    constexpr std::size_t reach = 8;  // of a decision in steps, over the seam
-    if (is_ring_) return void((inner_first_ = first_ + reach, inner_ = last_ + 1 - first_ - 2 * reach));
-    // Beside a gap that is not straight collisions are no inner ones either.
+    constexpr std::size_t radius = 8;  // of a decision in steps, over the seam
+    if (is_ring_) return void((inner_first_ = first_ + radius, inner_count_ = last_ + 1 - first_ - 2 * radius));
+    // Collisions beside a curved gap are not inner ones either.
     const bool curved = wall_gaps_.anywhere();
     inner_first_ = reached_left_ + 1 + (curved && left_end_);
     const Slot end = reached_right_ - (curved && right_end_);
-    inner_ = end > inner_first_ ? end - inner_first_ : 0;
+    inner_count_ = end > inner_first_ ? end - inner_first_ : 0;
   }
 
   // ---- for steps (steps/stepped.hpp)
@@ -219,7 +219,7 @@ template <Real T, class Masses> class GapSegment {
   std::ptrdiff_t ring_first_ = 0, ring_ = 0;  // slots of a ring
   bool left_end_ = false, right_end_ = false, across_seam_ = false, is_ring_ = false;
   Slot reached_left_ = 0, reached_right_ = 0;  // fronts; at a cut the gap owned beside it
-  Slot inner_first_ = 0, inner_ = 0;           // between them
+  Slot inner_first_ = 0, inner_count_ = 0;     // first inner slot, between them, and how many there are
   GapRange gaps_{0, 0};                        // all that there are on the line
   Walls<T> walls_;
   WallGaps<GapLine<T, Masses>> wall_gaps_;  // no particles rest there

@@ -3,8 +3,8 @@
 // (exact time, place), which is the order of the plain loop: README.md (Observers) says why.
 //
 // The times of a time slab are spread over it about evenly, and those of a log nearly in order. So the collisions go
-// into as many buckets of time as there are of them; what is left to sort are those that share a bucket. Buckets are
-// chosen by times rounded to double, which keeps their order in every type.
+// into buckets of time, twice as many as there are of them; what is left to sort are those that share a bucket. Buckets
+// are chosen by times rounded to double, which keeps their order in every type.
 
 #include <algorithm>
 #include <cmath>

@@ -3,9 +3,9 @@
 // side, through a time slab, as if there were nothing beyond. The chain's own header says what is copied, what cuts log
 // and what goes back: gap_segment.hpp, cluster_segment.hpp.
 //
-// Ties are not looked for at every collision. Of two collisions whose keys may belong to the same time, either the
-// second one is at the queue's root next, or it is beside the first one. If so, the segment begins its time slab again,
-// and compares exact times.
+// Ties are not looked for in the whole queue. If the keys of two collisions may belong to the same time, the second one
+// is at the queue's root next, or beside the first one. A segment checks both at every collision; if it finds such a
+// pair, it begins its time slab again and compares exact times.
 
 #include <cstddef>
 #include <cstdint>
@@ -20,7 +20,7 @@
 
 namespace cradle {
 
-// What the plain loop handles.
+// Requests of a chain that only the plain loop can fulfil.
 constexpr Notice for_plain_loop = Notice::origin_must_move | Notice::gap_below_floor | Notice::needs_slots;
 
 // The gaps that a segment owns, by slots of the chain, around the seam of a ring if need be.
@@ -31,7 +31,7 @@ struct OwnedGaps {
 
 // What a segment has made of a time slab. Parts add what they hand back to their chain.
 template <Real T, class CutCollision, class Observed> struct SegmentReport {
-  bool plain = false;         // a time slab for the plain loop
+  bool plain = false;         // whether the time slab is given up
   bool nothing_left = false;  // what the segment owned has merged with what others own
   Counts counts;
   T last_collision{0};  // if there was one
@@ -72,14 +72,14 @@ template <class Law, class Chain> class Segment {
            std::uint64_t most, const Steps* steps, typename Chain::Line::Gaps& after, Report& report) {
     if constexpr (Stepped<Law, Part>::possible)
       if (steps != nullptr && take(chain, own, ghosts, report)) {
-        if (part_.is_ring()) report.pace.rest = 0;  // Segments is patient enough
+        if (part_.is_ring()) report.pace.rest = 0;  // after a failure `Segments` itself waits (patience_)
         report.in_steps = stepped_.run(*steps, part_, law, stop, most, report);
         if (report.in_steps) return part_.give(chain, own, after, report);
         report.plain = part_.is_ring();
         if (report.plain) return;
       }
     if (!begin(chain, own, ghosts, report)) return;
-    // Observers are given exact times; without one nobody pays for the log.
+    // An observed run uses the loop with exact times and the log; others pay for neither.
     Finish made = report.observe ? make_collisions<true>(law, stop, most, report)
                                  : make_collisions<false>(law, stop, most, report);
     if (made == Finish::contested) {
@@ -122,7 +122,7 @@ template <class Law, class Chain> class Segment {
     const double latest = part_.queue_time(stop);
     const EventQueue::Key certainly_before = queue_.certainly_before(latest);
     const EventQueue::Key possibly_before = queue_.possibly_before(latest);
-    EventQueue::Key passed = 0;  // of the collision before: all that may be at the same time
+    EventQueue::Key passed = 0;  // keys up to this may be at the time of the collision before
     T time = T(0);
     Slot before = 0;  // slot of the collision before
     Counts counts;
@@ -142,7 +142,7 @@ template <class Law, class Chain> class Segment {
       }
       if constexpr (exact) {
         if (queue_.contested()) {
-          if (part_.across_seam()) return Finish::for_plain;  // positions are not in order there
+          if (part_.across_seam()) return Finish::for_plain;  // slots are not in the order of the line there
           s = ties_.first(queue_, part_, made);
         }
         const T now = part_.due(s);

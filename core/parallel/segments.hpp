@@ -23,11 +23,11 @@
 // pending in B and hence in the plain loop, which would have taken L and not K. So the plain loop takes the collisions
 // of the segments, up to the end of the time slab.
 //
-// The plain loop computes the whole time slab instead of the segments in three cases: collisions are out of order (a
-// gap is below zero), the origin moves after a collision, or a gap falls below the gap floor. Where the two logs of a
-// cut differ, the segments beside it are joined and computed again; this is repeated until all logs agree. The lengths
-// of time slabs, the places of cuts and the number of ghosts are chosen for speed alone; none of this shows in the
-// result.
+// A time slab is given up, and the plain loop makes the next collisions, if collisions are out of order (a gap is below
+// zero), the origin must move, a gap falls below the gap floor, or a segment cannot go on (a front needs more particles
+// than were copied, say). Where the two logs of a cut differ, the segments beside it are joined and computed again;
+// this is repeated until all logs agree. The lengths of time slabs, the places of cuts and the number of ghosts are
+// chosen for speed alone; none of this shows in the result.
 
 #include <algorithm>
 #include <cmath>

@@ -98,7 +98,7 @@ class AnyEngine {
   virtual std::string shape() const = 0;  // of what is saved
 };
 
-/// Throws Error for scenes that cannot be run, or not with a restitution that is a function.
+/// Throws Error if the scene cannot be run, or not with EngineOptions::restitution.
 std::unique_ptr<AnyEngine> begin_engine(const Scene& scene, const EngineOptions& options);
 
 /// Rounds a decimal once to the scalar type of a scene.

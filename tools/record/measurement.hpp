@@ -1,5 +1,5 @@
-// A measurement: what a run can be asked to record beside its collisions. Each has a file here, with a row (what others
-// must know of it: its times and tables) and a class that finds, records and at the end tables its numbers.
+// A measurement: what a run may be asked to record. Each has a file here, with a row (what others must know of it: its
+// times and tables) and a class that finds and records its numbers, and at the end puts them into a table.
 // The list of all is in measurements.hpp; runs, files, ensembles and comparisons follow from it.
 //
 // The class has, of these, the members that it needs. `now` is a RunState (engines/run_state.hpp), `put` takes tables.
@@ -10,7 +10,7 @@
 //                              a loop
 //   record(now, due, put)      then: keeps or puts what was found
 //   record_last(now, put)      where a run ends early, with a collision
-//   made(counts)               before the next collision, before rows are put and at the end
+//   made(counts)               told the counts before the next collision, before rows are put and at the end
 //   collision(c)               every collision, before it is made
 //   rows(), put_rows(put)      of a table that grows during the run: how many wait, and puts these
 //   finish(now, put)           the end

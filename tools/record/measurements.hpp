@@ -1,4 +1,4 @@
-// Those measurements that a run holds, and, at the end, the list of all. To add one, write its file and add it here.
+// The measurements that a run holds; at the end the list of all. To add one, write its file, include it and list it.
 #pragma once
 
 #include <array>
@@ -41,7 +41,7 @@ template <class... Each> class MeasurementsOf {
     });
   }
 
-  /// Asks the plan what is due now, for the next three. Returns whether anything is due that needs all particles.
+  /// Asks the plan what is due now, for `series_is_due`, `find` and `record`. Returns whether that needs all particles.
   bool come_to(const Number& time) {
     bool need_particles = false;
     each([&](auto& m, std::size_t row) {
@@ -137,7 +137,7 @@ template <class... Each> class MeasurementsOf {
   std::array<Due, sizeof...(Each)> due_ = {};  // at the time that the run has come to
 };
 
-/// All of them, in the order of their tables.
+/// All of them, in the order of their tables; the series is first (series_is_due).
 using Measurements =
     MeasurementsOf<SeriesMeasurement, SnapshotMeasurement, ProfileMeasurement, MassMeasurement, ZoneMeasurement,
                    AverageMeasurement, HistogramMeasurement, CorrelationMeasurement, StructureMeasurement,

@@ -18,8 +18,8 @@ struct MeasurementRow {
   bool (*wanted)(const Scene&);
   void (*leave_out)(Output&) = nullptr;  // null: runs that are compared have it too
 
-  /// The times of its samples, and those at which it writes a table; `key` has the latter, which a later end of the run
-  /// does not extend.
+  /// The times of its samples, and those at which it writes a table. `key` names the scene's list of the latter, which
+  /// a later end of the run does not extend.
   DecimalColumn (*samples)(const Scene&) = nullptr;
   const std::vector<Decimal>& (*times)(const Output&) = nullptr;
   const char* key = "";
@@ -35,7 +35,7 @@ struct MeasurementRow {
   bool of_many_collisions = false;  // averages, to which the order of single collisions does not matter
   bool averaged = true;             // over the replicas of an ensemble
   bool kept = false;                // of every replica, if the scene asks for that
-  const char* until_end = nullptr;  // a key, if it covers the time up to the end: the run cannot be extended
+  const char* until_end = nullptr;  // the key of one that lasts up to the end: no run with it is extended; else null
 };
 
 /// All of them, in the order of their tables.

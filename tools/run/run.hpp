@@ -24,7 +24,7 @@ class RunObserver;
 
 struct RunOptions {
   Progress::Show progress = Progress::Show::on_terminal;
-  RunObserver* observer = nullptr;  // is notified of every collision
+  RunObserver* observer = nullptr;  // gets every collision and every sample
   Interrupt* interrupt = nullptr;   // says whether to stop; heeded once there is something to keep
   Workers workers = {};             // for a run that is cut into segments
   std::string announcement = {};    // for standard error, once it is known that the run can begin

@@ -19,7 +19,7 @@ class RunGuards {
  public:
   RunGuards(const Scene& scene, AnyEngine& engine) : scene_(scene), engine_(engine) {}
 
-  void begin_again() { checked_at_ = 0, status_ = {}; }
+  void begin_again() { counted_from_ = 0, status_ = {}; }
   /// Checks all particles if that is due. Checks take about a hundredth of the time of the collisions. Whether one is
   /// due depends on the count of collisions, not on the clock, so that a failing run always stops at the same place.
   void check(const RunState& now, bool at_end) {
@@ -27,16 +27,17 @@ class RunGuards {
     const std::uint64_t collisions = engine_.counts().collisions;
     const auto active = static_cast<std::uint64_t>(std::max<ParticleIndex>(engine_.collided_particles(), 16));
     const std::uint64_t between = collisions_between / (at_end ? 2 : 1);
-    const bool put_off = checked_at_ > collisions && !at_end;
-    const bool due = checked_at_ > collisions ? engine_.collided_since_check()  // the end is checked
-                                              : collisions >= checked_at_ + between * active;
+    const bool put_off = counted_from_ > collisions && !at_end;
+    // A check that is put off is made at the end if anything has collided since the last one.
+    const bool due =
+        counted_from_ > collisions ? engine_.collided_since_check() : collisions >= counted_from_ + between * active;
     if (!put_off && due && active <= most_guarded) check_all(now.time.exact);
   }
   /// Checks a loaded state at once: a well-formed state may still not be one of this run.
   void check_loaded(const Number& time) {
-    const std::uint64_t before = checked_at_;
+    const std::uint64_t before = counted_from_;
     if (static_cast<std::uint64_t>(engine_.collided_particles()) <= most_guarded) check_all(time);
-    checked_at_ = before;
+    counted_from_ = before;
   }
 
   /// Throws if a particle is beyond a wall, at a time not before the last collision.
@@ -58,7 +59,7 @@ class RunGuards {
     return now;
   }
 
-  static auto state(auto& self) { return std::tie(self.checked_at_); }
+  static auto state(auto& self) { return std::tie(self.counted_from_); }
 
  private:
   [[noreturn]] void stop(const ReportedGuard& broken) const {
@@ -68,7 +69,7 @@ class RunGuards {
     const CheckedParticles found = engine_.check(time);
     if (found.broken) stop(*found.broken);
     // A check also visits merged particles, so the next one, except for that at the end, is delayed by their number.
-    checked_at_ = engine_.counts().collisions + collisions_between * found.merged;
+    counted_from_ = engine_.counts().collisions + collisions_between * found.merged;
     status_.gap_min = found.gap_min;
     status_.closure_gap = found.closure_gap;
     status_.closure_speed = found.closure_speed;
@@ -79,7 +80,7 @@ class RunGuards {
 
   const Scene& scene_;
   AnyEngine& engine_;
-  std::uint64_t checked_at_ = 0;  // at the last check of all particles
+  std::uint64_t counted_from_ = 0;  // number of collisions from which those up to the next check are counted
   RunStatus status_;
 };
 

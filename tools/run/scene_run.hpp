@@ -23,8 +23,8 @@ class SceneRun {
   virtual ~SceneRun() = default;
 
   const Scene& scene() const { return scene_; }
-  /// Begins again, from the start, with another replica, whose number the scene now has: a new run, but in the memory
-  /// of this one, for sinks that continue none. After an exception of any function make another run instead.
+  /// Begins a new run, of the replica whose number the scene now has, in the memory of this one; only for sinks that do
+  /// not continue runs. After an exception of any function make another run instead.
   virtual void begin_again() = 0;
   /// Throws Error for a time in the past or after the end, and if the run is over.
   virtual void advance(const Decimal& until) = 0;
@@ -33,7 +33,7 @@ class SceneRun {
   virtual std::uint64_t step(std::uint64_t n, const Decimal& until) = 0;
   /// Ends the run at its last collision: what it has recorded can then be written. Throws Error if it is over.
   virtual void stop() = 0;
-  /// Called before every collision from now on; empty: not any more.
+  /// From now on `observer` is called before every collision; an empty one ends that.
   virtual void observe(CollisionObserver observer) = 0;
 
   /// Null while the run is in progress.
@@ -58,9 +58,8 @@ class SceneRun {
   std::optional<RunOutcome> over_;
 };
 
-/// A run from the beginning, or from what the sink continues. Scene and sink must outlive it. Throws Error for scenes
-/// that cannot be run, or not with a restitution that is a function, and for the model of clusters, which has no
-/// particles.
+/// A run from the beginning, or from what the sink continues. Scene and sink must outlive it. Throws Error if the scene
+/// cannot be run, or not with RunOptions::restitution, and for the model of clusters, which has no particles.
 std::unique_ptr<SceneRun> begin_run(const Scene& scene, const RunOptions& options, Sink& sink);
 
 }  // namespace cradle::tools

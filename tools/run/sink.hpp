@@ -51,7 +51,7 @@ class Sink : public TableSink {
   virtual void check_clock() {}
   /// Whether it is time to call `keep`, after all rows have been added.
   virtual bool due() const { return false; }
-  /// Writes the progress of the run and, if it is time, interrupted or over, its state.
+  /// Writes the progress of the run, and its state if that is due or if the run is interrupted or over.
   virtual void keep(const RunStatus&, const std::function<void(StateSink&)>& /* save */, RunIs) {}
   /// The state to load before the run continues; null for a new run.
   virtual StateSource* loaded_from() { return nullptr; }

@@ -41,9 +41,9 @@ template <bool linked> HWY_INLINE void decide(const StepLine& line, Local& l, do
   for (std::size_t k = 0; k < l.count; ++k) {
     const std::size_t i = l.candidates[k];
     const auto place = static_cast<std::uint32_t>(i);
-    const StepLine::Special special = linked                         ? l.special[i]
-                                      : i - l.inner_first >= l.inner ? StepLine::edge
-                                                                     : StepLine::none;
+    const StepLine::Special special = linked                               ? l.special[i]
+                                      : i - l.inner_first >= l.inner_count ? StepLine::edge
+                                                                           : StepLine::none;
     const bool is_due = l.due[i] <= end;
     bool now = is_due & is_first(l.due + i);
     if (special == StepLine::edge) [[unlikely]] {

@@ -39,7 +39,7 @@ class StepLine {
   Halves high, low;
 
   // Gaps whose collisions are made as vectors; those at others are left to StepScalars.
-  std::uint32_t inner_first = 0, inner = 0;
+  std::uint32_t inner_first = 0, inner_count = 0;
 
   // Whether the last gap and the first one are neighbours. Then the gaps within a decision's radius of them are none of
   // the inner ones.

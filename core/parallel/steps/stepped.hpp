@@ -1,7 +1,7 @@
 #pragma once
-// A segment of a chain in gaps uses steps (steps.hpp) as follows: they work on the segment's copy, and leave collisions
-// at cuts, fronts and walls to it, and those beside the seam of a whole ring. If steps fail, the segment takes its copy
-// anew and goes through its event loop.
+// A segment of a chain in gaps uses steps (steps.hpp) as follows: they work on the segment's copy. The segment itself
+// makes the collisions at cuts, fronts and walls, and those beside the seam of a whole ring. If steps fail, it takes
+// its copy anew and goes through its event loop.
 
 #include <array>
 #include <concepts>
@@ -30,9 +30,10 @@ template <class Part> class AroundSteps : protected StepScalars {
   static Slot slot(std::size_t i) { return Part::first() + i; }
   bool is_held(Slot s) const { return s - Part::first() < line_.gaps(); }  // not beyond an end
 
-  // Makes the collisions of a task up to the local time `stop` on the line, which `fill` fills, if it can.
+  // Fills the line by `fill`, and makes on it the collisions of a task up to the local time `stop`. False if it cannot:
+  // the segment must then take its copy anew.
   template <class Fill> bool make(const Steps& steps, const StepTask& task, const T& stop, const Fill& fill) {
-    if (!(task.rounder > 0)) return false;  // a plain sum
+    if (!(task.rounder > 0)) return false;  // the ledger is a plain sum, which depends on the order
     made_ = {};
     StepResult inner;
     const bool done = fill() && steps.run(line_, task, *this, report_->pace, inner) && Numbers::all_made(line_, stop);
@@ -71,7 +72,7 @@ template <class Part> class AroundSteps : protected StepScalars {
   StepLine line_;
   Part* part_ = nullptr;
   Report* report_ = nullptr;
-  Totals made_;  // by the segment, not as vectors; by other laws also all that is below the cut-off
+  Totals made_;  // by the segment itself; where `outcomes` computes the law, also all that is below the cut-off
 
  private:
   template <class... X> static std::tuple<X...> copies(std::tuple<X&...>);
@@ -95,7 +96,8 @@ requires(StepNumbers<T>::template by_law<Law> && !Watched<Masses>) struct Steppe
  public:
   static constexpr bool possible = true, on_rings = !Numbers::pairs;
 
-  // Makes all collisions up to the local time `stop`, fewer than `most`, on what the part has taken.
+  // Makes all collisions up to the local time `stop`, fewer than `most`, on what the part has taken. False if it
+  // cannot.
   bool run(const Steps& steps, Part& part, const Law& law, const T& stop, std::uint64_t most, Report& report) {
     if (Numbers::pairs && (report.observe || part.curved())) return false;  // the event loop logs and knows curves
     if (report.pace.rest > 0) return --report.pace.rest, false;
@@ -159,11 +161,11 @@ requires(StepNumbers<T>::template by_law<Law> && !Watched<Masses>) struct Steppe
   }
   void set_inner() {
     line_.inner_first = static_cast<std::uint32_t>(part_->inner_first_ - Part::first());
-    line_.inner = static_cast<std::uint32_t>(part_->inner_);
+    line_.inner_count = static_cast<std::uint32_t>(part_->inner_count_);
   }
 
-  // The event loop's collision, on the cells, where all that is not plain is refused. Lags stay as they are, and are
-  // dropped when all is done.
+  // Makes one collision on the segment's cells as the event loop does. False if it comes too early, or requests what
+  // only the event loop or the plain loop can do. Lags stay as they are, and are dropped when all is done.
   bool collide(std::size_t i) override {
     auto& cells = part_->line_;
     const Slot s = slot(i), left = i == 0 && !line_.ring ? s - 1 : slot(line_.left_of(i)),

@@ -21,7 +21,8 @@ requires(!Law::bounces_only && requires(const Law& law) {
  public:
   static constexpr bool possible = true, on_rings = false;
 
-  // Makes all collisions up to the local time `stop`, fewer than `most`, on what the part has taken.
+  // Makes all collisions up to the local time `stop`, fewer than `most`, on what the part has taken. False if it
+  // cannot.
   bool run(const Steps& steps, Part& part, const Law& law, double stop, std::uint64_t most, Report& report) {
     const Wet<double>* wet = law_as<Wet<double>>(law);
     if (wet == nullptr || report.observe) return false;
@@ -56,8 +57,8 @@ requires(!Law::bounces_only && requires(const Law& law) {
         if (is_held(s)) line_.special[s - Part::first_] = StepLine::edge;
   }
 
-  // The event loop's collision, where all that is not plain is refused. Lags stay as they are, and are dropped when all
-  // is done.
+  // Makes one collision as the event loop does. False if it comes too early, or requests what only the plain loop can
+  // do. Lags stay as they are, and are dropped when all is done.
   bool collide(std::size_t i) override {
     auto& cells = part_->line_;
     const Slot s = Part::first_ + i, n = cells.right(s);

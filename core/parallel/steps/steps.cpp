@@ -62,7 +62,7 @@ struct Local {
   explicit HWY_INLINE Local(StepLine& line)
       : cells(line.cells), numbers(line.numbers), lag(line.lag), due(line.due), bound(line.bound),
         fraction(line.fraction), reduced(line.reduced), struck(line.struck.data()),
-        struck_mass(line.struck_mass.data()), inner_first(line.inner_first), inner(line.inner),
+        struck_mass(line.struck_mass.data()), inner_first(line.inner_first), inner_count(line.inner_count),
         around(line.ring ? line.gaps() : 0), special(line.special.data()), candidates(line.candidates.data()),
         waiting(line.waiting.data()), first(line.first.data()), first_by_links(line.first_by_links.data()),
         edges(line.edges.data()), visited(line.visited.data()) {}
@@ -71,7 +71,7 @@ struct Local {
   double* numbers;
   const double* lag;
   double *due, *bound, *fraction, *reduced, *struck, *struck_mass;
-  std::size_t inner_first, inner, around;  // around: gaps of a ring, else 0
+  std::size_t inner_first, inner_count, around;  // around: gaps of a ring, else 0
   const StepLine::Special* special;
   std::uint32_t *candidates, *waiting, *first, *first_by_links, *edges, *visited;
   std::size_t count = 0, later = 0, firsts = 0, by_links = 0, at_edges = 0, visits = 0;  // in these lists

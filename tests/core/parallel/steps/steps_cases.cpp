@@ -182,7 +182,7 @@ TEST_F(Steps, AreCheckedAndHardlyEverUndone) {
         Gas plain = random_gas(gaps, dense, seed), gas = plain;
         StepLine line;
         line.take(gas.gaps.data(), gas.lags.data(), gaps);
-        line.inner_first = 1, line.inner = static_cast<std::uint32_t>(gaps - 2);
+        line.inner_first = 1, line.inner_count = static_cast<std::uint32_t>(gaps - 2);
         NoEdges scalars;
         StepResult result;
         StepPace pace{.length = 0.003};

@@ -77,6 +77,7 @@ template <Real T> struct Pacing {
   }
   // In an epoch, after so many collisions (fewer than it may have): sets the next review and when the caller is polled.
   void set_next_review(std::uint64_t collisions, std::uint64_t active) {
+    if (!in_epochs) return;
     if (collisions >= next_poll) next_poll = collisions + std::min<std::uint64_t>(32 * active, 1 << 20);
     next_review = std::min(most_collisions, next_poll);
   }
@@ -84,8 +85,7 @@ template <Real T> struct Pacing {
   void epoch_ended(std::uint64_t collisions, const T& now, std::uint64_t active) {
     foresee(epoch, collisions - collisions_before, active);
     collisions_at_move = collisions;
-    if (!in_epochs) return begin_reviews(collisions, now, active);
-    begin_epoch(collisions, now, active);
+    in_epochs ? begin_epoch(collisions, now, active) : begin_reviews(collisions, now, active);
     set_next_review(collisions, active);
   }
 

@@ -8,6 +8,8 @@
 // cut-off, after as many collisions as in exact rationals.
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "cradle/core/chains/cluster_chain.hpp"
 #include "cradle/core/theory/inelastic_collapse.hpp"
 #include "cradle/tests/core/between_walls.hpp"
@@ -132,6 +134,24 @@ TEST(Standstill, IsOverWhereTheTimeSinceTheStartAdvances) {
   standstill.epoch_ended(0, 1.5, 2 * million);
   EXPECT_FALSE(standstill.at(3, 1.5, 3 * million, 2));
   EXPECT_TRUE(standstill.at(4, 1.5, 3 * million + (1 << 20), 2));
+}
+
+// Epochs end where the type resolves no shorter ones. When the next review comes is then the same whether collisions
+// are made in segments, which ask for it once more, or not.
+TEST(Pacing, EpochsEndWhereTimesUnderflow) {
+  constexpr double least = std::numeric_limits<double>::denorm_min();
+  constexpr std::uint64_t active = 1024, many = std::uint64_t{1} << 40;
+  Pacing<double> pacing(0, false);
+  pacing.reviewed(1, least, 0, active, true);
+  EXPECT_TRUE(pacing.in_epochs);
+  EXPECT_EQ(pacing.epoch, 64 * least);
+  pacing.epoch_ended(many, 0, active);
+  EXPECT_TRUE(pacing.in_epochs);
+  pacing.epoch_ended(2 * many, 0, active);
+  EXPECT_FALSE(pacing.in_epochs);
+  const std::uint64_t next = pacing.next_review;
+  pacing.set_next_review(2 * many, active);
+  EXPECT_EQ(pacing.next_review, next);
 }
 
 // Three particles whose speeds fall to 1e-280 at t = 12/7, 700 collisions long, and who then part.

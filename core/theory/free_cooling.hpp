@@ -11,6 +11,8 @@
 // and, as two particles share a collision, N n s/sqrt(pi) collisions per time: N ln(1 + t/tau)/(1 - eps^2) up to t. The
 // elastic limit, N n s t/sqrt(pi), is exact: particles that pass through each other meet as often. Haff's law neglects
 // correlations. It ends where particles cluster, about where its energy falls below that of the sticky gas.
+// On a ring, N particles without total momentum have N - 1 degrees of freedom, E_0 = (N - 1) m s^2/2, and each of them
+// meets N - 1 others: the laws of energy and of collisions per particle hold with N - 1 for N, and n = N/L.
 // Units of the scene.
 #pragma once
 

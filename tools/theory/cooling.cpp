@@ -27,7 +27,7 @@ void predict_cooling(const Scene& scene, Predictions& table) {
     }
     if (dry)
       table.point("energy_haff", "Haff 1983", "continuous", t,
-                  particles * theory::haff_energy_per_particle(gas, scene.law.restitution.value, t));
+                  (particles - 1) * theory::haff_energy_per_particle(gas, scene.law.restitution.value, t));
   }
 }
 

@@ -1,6 +1,6 @@
 // What `cradle check` expects of a scene, against runs of the same initial state: elastic gases, whose mean number of
-// collisions is exact, up to the spread of N velocities; and what it says where a gas clusters. (Where a shock
-// collapses: tests/tools/outputs.txt.)
+// collisions is exact, up to the spread of N velocities; few particles, by Haff's law; and what it says where a gas
+// clusters. (Where a shock collapses: tests/tools/outputs.txt.)
 #include "cradle/tools/setup/read_scene.hpp"
 #include "cradle/tools/theory/cost.hpp"
 
@@ -11,6 +11,7 @@
 #include "cradle/core/engine/simulation.hpp"
 #include "cradle/tests/texts.hpp"
 #include "cradle/tools/setup/initial_state.hpp"
+#include "cradle/tools/theory/laws.hpp"
 
 namespace cradle::tools::cost_test {
 
@@ -50,6 +51,27 @@ TEST(ExpectedCollisions, OfElasticGasesAreCounted) {
     EXPECT_TRUE(cost.predictable());
     EXPECT_NEAR(*cost.collisions / counted(scene), 1, four_deviations(velocities)) << text;
   }
+}
+
+// Four particles, nearly elastic: on the average over states the energy by Haff's law, three degrees of freedom of
+// deviation sqrt(2/3), and the collisions. Four deviations.
+TEST(ExpectedCollisions, OfFewParticlesAreThoseOfTheirDegreesOfFreedom) {
+  Scene scene = scene_of("law = { type = 'inelastic', restitution = 0.999 }\nrun.until = 20\n"
+                         "initial = { type = 'ring', particles = 4, length = 4, positions = 'poisson' }\n");
+  constexpr unsigned replicas = 4000;
+  double energy = 0, collisions = 0;
+  for (; scene.initial.replica < replicas; ++scene.initial.replica) {
+    const auto particles = initial_particles<double>(scene);
+    Simulation run(Inelastic<double>(0.999), GapChain<double>(particles, 0.0));
+    ASSERT_EQ(run.advance(20), Status::reached);
+    energy += (particles->kinetic_energy() - run.energy_lost()) / replicas;
+    collisions += static_cast<double>(run.counts().collisions) / replicas;
+  }
+  const std::vector<Prediction> table = predictions(scene);
+  ASSERT_EQ(table.back().quantity, "energy_haff");
+  EXPECT_EQ(table.back().t, 20);
+  EXPECT_NEAR(table.back().value / energy, 1, 4 * std::sqrt(2. / 3 / replicas));
+  EXPECT_NEAR(*expected_cost(scene).collisions / collisions, 1, four_deviations(4 * replicas));
 }
 
 TEST(ExpectedCollisions, OnAFloorHaveNoPaceUnlessParticlesRestThere) {

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <string>
+#include <utility>
 
 #include "cradle/tools/commands/commands.hpp"
 #include "cradle/tools/ensemble/study.hpp"
@@ -48,7 +50,8 @@ void print_scenes(const std::string& first, const std::string& second) {
     if (found(a, key) == a.end()) fmt::print("scene: {} = nothing against {}\n", key, shortened(text));
 }
 
-// A line for each part of the file in which something differs.
+// A line for each part of the file in which something differs. By how much, columns say if there are any: attributes
+// are often rounding itself.
 void print_parts(const std::vector<Difference>& found) {
   std::vector<std::string> parts;
   for (const Difference& difference : found)
@@ -60,7 +63,10 @@ void print_parts(const std::vector<Difference>& found) {
     for (const Difference& difference : found) {
       if (part_of(difference.place) != part) continue;
       ++count;
-      if (difference.size && (largest == nullptr || *difference.size > *largest->size)) largest = &difference;
+      const auto weight = [](const Difference& of) {
+        return std::pair(of.place.find('@') == std::string::npos, *of.size);
+      };
+      if (difference.size && (largest == nullptr || weight(*largest) < weight(difference))) largest = &difference;
     }
     fmt::print("{}: {} difference{}{}\n", part, count, count == 1 ? "" : "s",
                largest == nullptr

@@ -33,31 +33,34 @@ static_assert(rows_in_order(check_texts));
 
 std::string near(const std::string& number) { return number.size() > 24 ? number.substr(0, 24) + "..." : number; }
 
-// The digits that both ends share, and how much is known; both ends where they do not share many.
-std::string shown(const Enclosed& x) {
-  const auto &low = x.decimals.low, &high = x.decimals.high;
-  const auto end = std::min(low.find('e'), low.size());
-  constexpr std::size_t least = 16, most = 60;
-  const auto shared =
-      static_cast<std::size_t>(std::mismatch(low.begin(), low.end(), high.begin(), high.end()).first - low.begin());
-  if (shared < least || low.substr(end) != high.substr(std::min(high.find('e'), high.size())))
-    return fmt::format("{} to {}", low, high);
-  return fmt::format("{}...{} (known to {:.2g})", low.substr(0, std::min({shared, most, end})), low.substr(end),
-                     x.radius);
-}
-
-// 10^x in two digits, also below the range of double.
-std::string power_of_ten(double x) {
-  if (!(std::abs(x) > 300) || std::isinf(x)) return fmt::format("{:.2g}", std::pow(10, x));
-  return fmt::format("{:.1f}e{:.0f}", std::pow(10, x - std::floor(x)), std::floor(x));
-}
-
 // That of the last collision has all digits of the proof.
 std::string shown_time(const std::string& time) {
   constexpr std::size_t most = 40;
   if (time.size() <= most) return time;
   const auto end = std::min(time.find('e'), time.size());
   return time.substr(0, std::min(end, most)) + "..." + time.substr(end);
+}
+
+// The digits that both ends share, and how much is known. Both ends where they do not share many, unless that is
+// because a shorter number is between them, as 9.1 between 9.09999999999999999 and 9.10000000000000001: then that one.
+std::string shown(const Enclosed& x) {
+  const auto &low = x.decimals.low, &high = x.decimals.high;
+  const auto end = std::min(low.find('e'), low.size());
+  constexpr std::size_t least = 16, most = 60;
+  const auto shared =
+      static_cast<std::size_t>(std::mismatch(low.begin(), low.end(), high.begin(), high.end()).first - low.begin());
+  if (shared == 0 || low.substr(end) != high.substr(std::min(high.find('e'), high.size())) ||
+      (shared < least && !(x.radius < 1e-15L * std::abs(x.doubles.high))))
+    return fmt::format("{} to {}", shown_time(low), shown_time(high));
+  const std::string begin = shared < least ? (low.front() == '-' ? low : high).substr(0, shared + 1)
+                                           : low.substr(0, std::min({shared, most, end})) + "...";
+  return fmt::format("{}{} (known to {:.2g})", begin, low.substr(end), x.radius);
+}
+
+// 10^x in two digits, also below the range of double.
+std::string power_of_ten(double x) {
+  if (!(std::abs(x) > 300) || std::isinf(x)) return fmt::format("{:.2g}", std::pow(10, x));
+  return fmt::format("{:.1f}e{:.0f}", std::pow(10, x - std::floor(x)), std::floor(x));
 }
 
 // Tables of a run that no proof encloses: they are sums over what is proved, but rounded by the run alone; or a
@@ -111,7 +114,11 @@ std::string Certified::not_proved() const {
                               fmt::join(named, ", "),
                               open.size() > most ? fmt::format(" and {} more times", open.size() - most) : ""));
   }
-  if (!certificate.doubt && (outcome.end == RunEnd::collapsed || outcome.end == RunEnd::unproved))
+  if (!certificate.doubt && outcome.end == RunEnd::collapsed)
+    all.push_back(
+        "that infinitely many collisions follow, complete at the run's t_c to within its bound: of that there "
+        "is a theorem (core/engine/README.md), which this proof does not check");
+  if (!certificate.doubt && outcome.end == RunEnd::unproved)
     all.push_back("that this is an inelastic collapse, and when it is complete; that is an estimate of the run, which "
                   "ended at the last collision that is proved");
   return fmt::format("{}", fmt::join(all, "; "));
@@ -126,6 +133,10 @@ std::string certificate_text(const Certified& run) {
                        c.collisions, shown_time(c.samples.back().time_text));
   else
     text = fmt::format("undecided {}\nproved up to there: {} collisions\n", run.undecided(), c.collisions);
+  const auto& limits = run.scene.run;
+  if (c.doubt && stops_at_collapse(run.scene) && limits.precision == Precision::mpfr && !limits.stop_gap)
+    text += "to decide it, if it is a collapse: give run.stop_gap a gap at which the run ends, 1e-100 say (with more "
+            "digits the run follows a collapse further)\n";
   if (const std::string beyond = run.not_proved(); !beyond.empty()) text += fmt::format("not proved: {}\n", beyond);
   text += fmt::format("  scene     {}, checksum {:016x}\n", run.scene.name, crc64(effective_toml(run.scene)));
   text += fmt::format(

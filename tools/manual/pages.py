@@ -91,10 +91,12 @@ def on_files(files, config):
 def headings_of_keys(markdown):
     """What the program prints of its keys, with a heading for each table and key, which links and the search find."""
     page, _, keys = markdown.partition("<!-- output of: cradle scenes --keys -->\n```text\n")
-    table = ""
-    for key, kind, meaning in re.findall(r"^(\S+)  \((.*)\)\n    (.*)", keys, re.M):
-        first = key.split(".")[0]
-        page += f"\n## {first}\n" * (first != table and first != key) + f"\n### {key}\n\n`{kind}`: {meaning}\n"
+    table, entries = "", re.findall(r"^(\S+)  \((.*)\)\n    (.*)", keys, re.M)
+    for key, kind, meaning in entries:
+        first, several = key.split(".")[0], sum(key == other for other, *_ in entries) > 1
+        of = re.search(r' with initial.type = "(\w+)"', meaning) if several else None
+        page += (f"\n## {first}\n" * (first != table and first != key) + f"\n### {key}{f' ({of[1]})' if of else ''}\n"
+                 + f"\n`{kind}`: {meaning}\n")
         table = first
     return page
 
@@ -130,12 +132,12 @@ def on_page_markdown(markdown, page, **_):
 
 
 def on_post_build(config, **_):
-    """The words in the titles of *How do I* are tags as well, which the search ranks first. Its index once more, as a
+    """The words in titles that are questions are tags as well, which the search ranks first. Its index once more, as a
     script, for pages that are opened from a disk."""
     folder = Path(config["site_dir"]) / "search"
     index = json.loads((folder / "search_index.json").read_text(encoding="utf-8"))
     for page in index["docs"]:
-        if page["location"].startswith("how-to-"):
+        if page["title"].endswith("?"):
             page["tags"] = page["title"].split()
     text = json.dumps(index)
     (folder / "search_index.json").write_text(text, encoding="utf-8")

@@ -1,6 +1,8 @@
 // A page that is opened from a disk may neither fetch the index of the search nor start a worker. There the index comes
 // as a script (written by pages.py), and the worker's script runs in a hidden frame. It starts when the reader goes to
-// the search field, since the browser needs a moment to prepare the index.
+// the search, since the browser needs a moment to prepare the index. Until then a query finds nothing. It must be
+// answered, though: the theme waits for each answer and keeps only the last message meanwhile, so that the one with the
+// index would be lost. It sends the last query again once the index is there.
 if (location.protocol === "file:") {
   const index = new URL("search/search_index.js", document.currentScript.src);
   document.write(`<script src="${index}"><\/script>`);
@@ -12,6 +14,7 @@ if (location.protocol === "file:") {
       this.waiting = [];
       const isField = element => element !== null && element.name === "query";
       document.addEventListener("focusin", event => isField(event.target) && this.start());
+      document.addEventListener("change", event => event.target.dataset.mdToggle === "search" && this.start());
       if (isField(document.activeElement) || location.search) this.start();
     }
 
@@ -21,7 +24,7 @@ if (location.protocol === "file:") {
       this.frame.hidden = true;
       document.body.append(this.frame);
       const inside = this.frame.contentWindow;
-      inside.postMessage = data => this.dispatchEvent(new MessageEvent("message", {data}));
+      inside.postMessage = data => this.answer(data);
       const script = inside.document.createElement("script");
       script.src = this.url;
       script.onload = () => {
@@ -33,9 +36,13 @@ if (location.protocol === "file:") {
     }
 
     postMessage(data) {
-      if (this.waiting) this.waiting.push(data);
+      const query = 2, result = { type: 3, data: { items: [] } };
+      if (this.waiting && data.type === query) queueMicrotask(() => this.answer(result));
+      else if (this.waiting) this.waiting.push(data);
       else this.frame.contentWindow.dispatchEvent(new MessageEvent("message", {data}));
     }
+
+    answer(data) { this.dispatchEvent(new MessageEvent("message", {data})); }
 
     terminate() {
       if (this.frame) this.frame.remove();

@@ -19,7 +19,7 @@ namespace cradle {
 // In double a line of the cache.
 template <Real T> struct alignas(std::same_as<T, double> ? 64 : alignof(T)) Cell : TimedGap<T> {
   T velocity{0}, mass{1};
-  ParticleIndex particle = 0;  // initial number of the heaviest particle, which names the cluster
+  ParticleIndex particle = 0;  // names the cluster; of two that merge the heavier one's stays
   Slot left = 0, right = 0;
 
   static auto state(auto& self) {

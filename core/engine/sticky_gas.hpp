@@ -87,7 +87,8 @@ template <Real T> class StickyGas {
   T front_left(const T&) const { return held_[collided().first].x; }
   T front_right(const T&) const { return held_[collided().second - 1].x; }
 
-  // As for a chain; a cluster is named after its heaviest particle; ties go left to right.
+  // As for a chain, but that a cluster is named after its heaviest particle, the leftmost of equal ones: the order of
+  // merges, by which a chain names it, is not known here.
   Configuration<T> configuration(const T&) const {
     Configuration<T> c;
     c.time = time_;

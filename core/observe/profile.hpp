@@ -2,7 +2,8 @@
 // Profiles over bins of equal width: number and mass density, mass-weighted mean velocity and its variance (the
 // granular temperature), and number density and velocity of right- and left-movers apart (the paper's rho±, u±; Figs. 2
 // b, c, 6, 7). Lengths, speeds, masses in units of the scene; float64, since a bin holds many particles. Bins without
-// particles have density 0 and no velocity (NaN).
+// particles have density 0 and no velocity (NaN). The last bin has its right end too, where particles rest on a wall;
+// not so on a ring, where that may be the place at which the first bin begins.
 
 #include <algorithm>
 #include <cmath>
@@ -32,24 +33,24 @@ struct BinRange {
 namespace detail {
 
 // One bin, filled particle by particle; mean and variance by West's update, since late temperatures are small compared
-// with v^2. A particle at rest is neither a right- nor a left-mover.
+// with v^2. A particle at rest is neither a right- nor a left-mover: `rest` is a speed that may be rounding.
 struct Bin {
   double count = 0, mass = 0, velocity = 0, scatter = 0;
   double right = 0, right_speed = 0, left = 0, left_speed = 0;
 
-  void add(double v, double m) {
+  void add(double v, double m, double rest) {
     count += 1;
     mass += m;
     const double from_mean = v - velocity;
     velocity += from_mean * (m / mass);
     scatter += m * from_mean * (v - velocity);
-    if (v > 0) right += 1, right_speed += v;
-    if (v < 0) left += 1, left_speed += v;
+    if (v > rest) right += 1, right_speed += v;
+    if (v < -rest) left += 1, left_speed += v;
   }
 };
 
-// The bin of a particle within the range: `place` counts bins from the start of the range; it may be rounded up to
-// their number for a particle just below the end.
+// The bin of a particle within the range: `place` counts bins from the start of the range; it is their number for a
+// particle at the end, and may be rounded up to it just below.
 inline std::size_t bin_at(double place, std::size_t bins) {
   return std::min(static_cast<std::size_t>(place), bins - 1);
 }
@@ -81,7 +82,8 @@ void for_each_particle(const Configuration<T>& c, const Particles<T>& particles,
     const double x = to_double(c.x[j]), first = images ? std::floor((range.from - x) / length) : 0;
     for (std::int64_t turn = 0; turn <= turns; ++turn) {
       const double image = images ? x + (first + static_cast<double>(turn)) * length : x;
-      if (image >= range.from && image < range.to) visit(image, to_double(c.v[j]), to_double(c.m[j]));
+      if (image >= range.from && (images ? image < range.to : image <= range.to))
+        visit(image, to_double(c.v[j]), to_double(c.m[j]));
     }
   }
   const auto fly = [&](ParticleIndex particle) {
@@ -92,22 +94,32 @@ void for_each_particle(const Configuration<T>& c, const Particles<T>& particles,
     if (particle % between_stops == 0 && stopped && stopped()) throw WalkStopped();
     visit(x, to_double(undisturbed(particles, particle, elapsed).v.value()), to_double(particles.mass(particle)));
   };
-  // They fly in order: finds the first of [low, high) that is not to the left of a position.
-  const auto first_from = [&](ParticleIndex low, ParticleIndex high, double place) {
+  // They fly in order: finds the first of [low, high) that is not to the left of the range, or that is to its right.
+  const auto first = [&](ParticleIndex low, ParticleIndex high, const auto& is_before) {
     return *std::ranges::partition_point(std::views::iota(low, std::max(low, high)),
-                                         [&](ParticleIndex particle) { return fly(particle) < place; });
+                                         [&](ParticleIndex particle) { return is_before(fly(particle)); });
   };
-  for (ParticleIndex particle = first_from(0, c.from, range.to) - 1; particle >= 0; --particle) {
+  const auto left_of_it = [&](double x) { return x < range.from; },
+             up_to_its_end = [&](double x) { return x <= range.to; };
+  for (ParticleIndex particle = first(0, c.from, up_to_its_end) - 1; particle >= 0; --particle) {
     const double x = fly(particle);
     if (x < range.from) break;
     visit_free(particle, x);
   }
-  for (ParticleIndex particle = first_from(c.to + 1, particles.count(), range.from); particle < particles.count();
+  for (ParticleIndex particle = first(c.to + 1, particles.count(), left_of_it); particle < particles.count();
        ++particle) {
     const double x = fly(particle);
-    if (x >= range.to) break;
+    if (!up_to_its_end(x)) break;
     visit_free(particle, x);
   }
+}
+
+// How fast a particle at rest may seem: what closing speeds have lost of their sum, and some roundings of the fastest.
+template <Real T> double rounding_of_speeds(const Configuration<T>& c) {
+  if (!c.speeds_are_sums || !c.closure_speed) return 0;
+  T fastest(0);
+  for (const T& v : c.v) fastest = std::max(fastest, magnitude(v));
+  return to_double(T(magnitude(*c.closure_speed) + T(4) * T(std::numeric_limits<T>::epsilon()) * fastest));
 }
 
 inline std::vector<double> bin_centres(BinRange range, std::size_t bins) {
@@ -125,9 +137,10 @@ Profile profile(const Configuration<T>& c, const Particles<T>& particles, const 
           "profile without extent: give a range that increases and at least one bin");
   const double width = (range.to - range.from) / static_cast<double>(bins);
   std::vector<detail::Bin> sums(bins);
-  for_each_particle(
-      c, particles, elapsed, range,
-      [&](double x, double v, double m) { sums[detail::bin_at((x - range.from) / width, bins)].add(v, m); }, stopped);
+  const auto enter = [&, rest = rounding_of_speeds(c)](double x, double v, double m) {
+    sums[detail::bin_at((x - range.from) / width, bins)].add(v, m, rest);
+  };
+  for_each_particle(c, particles, elapsed, range, enter, stopped);
 
   Profile p;
   p.time = to_double(c.time);

@@ -11,8 +11,9 @@
 // and, as two particles share a collision, N n s/sqrt(pi) collisions per time: N ln(1 + t/tau)/(1 - eps^2) up to t. The
 // elastic limit, N n s t/sqrt(pi), is exact: particles that pass through each other meet as often. Haff's law neglects
 // correlations. It ends where particles cluster, about where its energy falls below that of the sticky gas.
-// On a ring, N particles without total momentum have N - 1 degrees of freedom, E_0 = (N - 1) m s^2/2, and each of them
-// meets N - 1 others: the laws of energy and of collisions per particle hold with N - 1 for N, and n = N/L.
+// A particle meets N - 1 others. On a ring, N particles without total momentum have N - 1 degrees of freedom, E_0 =
+// (N - 1) m s^2/2: the laws of energy and of collisions per particle hold with N - 1 for N, and n = N/L. Between walls
+// they hold with N, and n = (N - 1)/L.
 // Units of the scene.
 #pragma once
 
@@ -76,12 +77,13 @@ inline double clustering_time(const FreeCooling& gas, double restitution) {
 /// Collisions per time, those with walls included, of N elastic particles of mass m between walls of the temperatures
 /// T_1, T_2 at a distance L, after many passages. Particles that pass through each other leave wall i with the density
 /// v exp(-m v^2/2 T_i): half Gaussians of deviation s_i = sqrt(T_i/m), densities n_1 s_1 = n_2 s_2 by equal fluxes. The
-/// mean |v - v'| is (2 - sqrt 2)(2/sqrt pi) s_i within one half, sqrt(2/pi)(s_1 + s_2) between the two.
+/// mean |v - v'| is (2 - sqrt 2)(2/sqrt pi) s_i within one half, sqrt(2/pi)(s_1 + s_2) between the two. There are
+/// N (N - 1)/2 pairs.
 inline double heated_collision_rate(double particles, double length, double s1, double s2) {
   const double n = particles / length, n1 = n * s2 / (s1 + s2), n2 = n - n1,
                root = std::numbers::sqrt2 * std::numbers::inv_sqrtpi,  // sqrt(2/pi)
       within = (std::numbers::sqrt2 - 1) * root * (n1 * n1 * s1 + n2 * n2 * s2);
-  return length * (within + n1 * n2 * root * (s1 + s2)) + 2 * n1 * s1 * root;
+  return length * (within + n1 * n2 * root * (s1 + s2)) * (1 - 1 / particles) + 2 * n1 * s1 * root;
 }
 
 }  // namespace cradle::theory

@@ -19,13 +19,13 @@ struct Trusted {
   double time = 0;
   std::uint64_t collisions = 0;
   bool to_end = false;
-  /// Up to this sample that sequence is proved (certify), in a scene of which a proof exists; -1: nowhere.
-  double proved_time = -1;
+  /// Up to this sample that sequence is proved (certify), in a scene of which a proof exists; NaN: nowhere.
+  double proved_time = none();
   bool proved_to_end = false;
   /// Counts (collisions, merges) right up to this time.
   double counts_time = 0;
-  /// Energy and right front have six digits of the reference or more in all samples up to this time; -1: in none.
-  double six_digits_time = -1;
+  /// Energy and right front have six digits of the reference or more in all samples up to this time; NaN: in none.
+  double six_digits_time = none();
   /// Per sample: decimal digits to which energy and right front agree with the reference, no more than the type has.
   std::vector<double> times, energy_digits, front_digits;
   double collapse_digits = -1;  // of the collapse time; -1: the run did not stop at a collapse

@@ -7,10 +7,10 @@
 
 namespace cradle::tools {
 
-/// Named numbers; NaN for those that the run does not have.
-inline Summary scenario_numbers(const Scenario& s) {
+/// Named numbers; NaN for those that the run, which begins at `start`, does not have.
+inline Summary scenario_numbers(const Scenario& s, double start = 0) {
   const bool met = s.passes + s.sticks > 0;
-  return {{"pair_established", s.established},
+  return {{"pair_established", start + s.established},
           {"first_meeting", s.first_meeting},
           {"first_passed", met ? double(s.first_passed) : none()},
           {"passes", static_cast<double>(s.passes)},
@@ -37,7 +37,7 @@ class ScenarioMeasurement {
       .of_particles = false,
   };
 
-  explicit ScenarioMeasurement(const Measured& of) : clouds_(has_clouds(of.scene)) {}
+  explicit ScenarioMeasurement(const Measured& of) : clouds_(has_clouds(of.scene)), start_(of.scene.run.start.value) {}
 
   void made(const Counts& now) { merges_ = now.merges; }
   void collision(const ObservedCollision& c) { watch_.collision(c.left, c.right, c.time, merges_); }
@@ -46,7 +46,7 @@ class ScenarioMeasurement {
     if (clouds_) now.sample(watch_);
   }
   void finish(const RunState&, TableSink& put) {
-    found_ = scenario_numbers(watch_.result(merges_));
+    found_ = scenario_numbers(watch_.result(merges_), start_);
     put.add(Group{"scenario", {found_.begin(), found_.end()}, {}});
   }
   Summary summary() const { return found_; }
@@ -55,6 +55,7 @@ class ScenarioMeasurement {
 
  private:
   bool clouds_;
+  double start_;
   ScenarioWatch watch_;
   std::uint64_t merges_ = 0;
   Summary found_;

@@ -355,13 +355,14 @@ const std::vector<Field> fields_after_walls{
      "number of bins of the profiles"},
     {"output.profiles.range", output_of<&Output::profiles, &Profiles::range>, "l", "", any, &always,
      "the two ends of the bins; without it, those of the ring, or of the interaction zone at that time (ensembles need "
-     "it). Bins beyond a ring have the images of its particles"},
+     "it). Bins beyond a ring have the images of its particles; on a line the last bin has its right end too"},
     {"output.masses", output_of<&Output::masses>, "t", "[]", within_run, &merging,
      "times at which the distribution of cluster masses is written"},
     {"output.zone.from", output_of<&Output::zone, &Zone::from>, "t", "", within_run, &wet_shock,
      "start of the average over the interaction zone, which also gives its width; without it, none"},
     {"output.zone.samples", output_of<&Output::zone, &Zone::samples>, "", "400", "[16, 1e7]", &wet_shock,
-     "number of samples in the average over the zone, evenly spaced up to run.until"},
+     "number of samples in the average over the zone, evenly spaced from output.zone.from on, the last an interval "
+     "before run.until"},
     {"output.zone.bins", output_of<&Output::zone, &Zone::bins>, "", "60", "[4, 1e6]", &wet_shock,
      "number of bins of the average over the zone"},
     {"output.zone.reach", output_of<&Output::zone, &Zone::reach>, "l", "", "(0, inf)", &wet_shock,

@@ -114,7 +114,7 @@ void gas(const Scene& scene, Cost& cost) {
   const double particles = static_cast<double>(initial.particles), length = ends->second.value - ends->first.value,
                time = span(scene);
   const bool walls = scene.walls.any();
-  const theory::FreeCooling cooling{initial.variance.value, particles / length};
+  const theory::FreeCooling cooling{initial.variance.value, (particles - (walls ? 1 : 0)) / length};
   if (scene.law.type == LawType::sticky) {
     const double left_over = theory::sticky_clusters_per_particle(cooling, time);
     if (left_over < 0.5) cost.collisions = particles * (1 - left_over);
@@ -153,8 +153,8 @@ void gas(const Scene& scene, Cost& cost) {
   if (eps == 1) each *= uniform(std::sqrt(std::numbers::pi / 3));
   cost.collisions = std::max(0., (particles - (walls ? 0 : 1)) * each - particles * before);
   if (walls && eps == 1)  // mean |v|: s sqrt(2/pi), of uniform velocities s sqrt(3)/2
-    *cost.collisions +=
-        flights * time * std::numbers::sqrt2 * std::numbers::inv_sqrtpi * uniform(std::sqrt(3 * std::numbers::pi / 8));
+    *cost.collisions += particles / length * std::sqrt(cooling.variance) * time * std::numbers::sqrt2 *
+                        std::numbers::inv_sqrtpi * uniform(std::sqrt(3 * std::numbers::pi / 8));
 }
 
 // How a run ends at a collapse, and what takes it past.

@@ -9,7 +9,7 @@
 #include "cradle/core/observe/configuration_statistics.hpp"
 #include "cradle/core/observe/profile.hpp"
 #include "cradle/core/observe/zone.hpp"
-#include "cradle/tests/core/fixtures.hpp"
+#include "cradle/tests/core/between_walls.hpp"
 
 namespace cradle::test::profile_test {
 
@@ -66,6 +66,27 @@ TEST(Profile, ParticleJustBelowTheEndIsInTheLastBin) {
       ASSERT_GT(p.density.back(), 0) << range.from << " to " << range.to << " in " << bins;
     }
   }
+}
+
+// On a line the last bin has its end, where particles rest on a wall; so two walls are alike.
+TEST(Profile, AParticleAtEitherEndIsInABin) {
+  for (const double at : {0., 4.}) EXPECT_EQ(total(at_start(list<double>({at}, {0}), {0, 4}, 2).density, 2), 1) << at;
+  const auto rows = rshock<double>(40);  // the fronts have reached none of them
+  EXPECT_EQ(total(at_start(rows, {rows->position(3), rows->position(7)}, 3).density, 1),
+            5 / ((rows->position(7) - rows->position(3)) / 3));
+}
+
+// Their velocities are what sums of closing speeds leave of them.
+TEST(Profile, ParticlesAtRestMoveNeitherWayInAnyType) {
+  const auto at_rest = []<class T>(T tenth) {
+    const auto particles = list<T>({T(1), T(2), T(3), T(4), T(5)}, {T(7) * tenth, tenth, T(0), T(0), T(3) * tenth});
+    const auto walled = between<T>(T(0), particles, Wall<T>{T(0)}, Wall<T>{T(6)});
+    const Profile p = profile(mass_run(walled, Inelastic<T>(T(1))).configuration(T(0)), *walled, T(0), {0, 6}, 6);
+    EXPECT_EQ(p.density_left, (std::vector<double>(6, 0.)));
+    EXPECT_EQ(p.density_right, (std::vector<double>{0, 1, 1, 0, 0, 1}));
+  };
+  at_rest(0.1);
+  at_rest(0.1L);
 }
 
 TEST(Profile, TemperatureKeepsItsDigitsInAFastFrame) {

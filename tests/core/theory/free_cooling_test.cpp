@@ -87,11 +87,11 @@ TEST(Collisions, ClusteringIsWhereHaffMeetsTheStickyGas) {
   EXPECT_LT(theory::haff_energy_per_particle(parameters, 0, t), theory::sticky_energy_per_particle(parameters, t));
 }
 
-// Equal temperatures: the elastic gas, N n s/sqrt(pi), and two walls, each met n s/sqrt(2 pi) times per time.
+// Equal temperatures: the elastic gas, (N - 1) n s/sqrt(pi), and two walls, each met n s/sqrt(2 pi) times per time.
 TEST(Collisions, HeatedWallsOfOneTemperatureAreEquilibrium) {
   const double s = 1.7, n = 3, length = 50;
   EXPECT_NEAR(theory::heated_collision_rate(n * length, length, s, s),
-              n * n * length * s / std::sqrt(std::acos(-1)) + 2 * n * s / std::sqrt(2 * std::acos(-1)), 1e-11);
+              n * (n * length - 1) * s / std::sqrt(std::acos(-1)) + 2 * n * s / std::sqrt(2 * std::acos(-1)), 1e-11);
 }
 
 }  // namespace cradle::test::free_cooling_test

@@ -74,6 +74,16 @@ TEST(ExpectedCollisions, OfFewParticlesAreThoseOfTheirDegreesOfFreedom) {
   EXPECT_NEAR(*expected_cost(scene).collisions / collisions, 1, four_deviations(4 * replicas));
 }
 
+// Six elastic particles between walls: 15 pairs, not 18, and the walls.
+TEST(ExpectedCollisions, OfFewParticlesBetweenWallsAreThoseOfTheirPairs) {
+  Scene scene = scene_of("law = { type = 'inelastic', restitution = 1 }\nrun.until = 20\nwalls.left.position = 0\n"
+                         "initial = { type = 'gas', particles = 6, density = 2, variance = 2, positions = 'poisson' }");
+  constexpr unsigned replicas = 2000;
+  double collisions = 0;
+  for (; scene.initial.replica < replicas; ++scene.initial.replica) collisions += counted(scene) / replicas;
+  EXPECT_NEAR(*expected_cost(scene).collisions / collisions, 1, four_deviations(6 * replicas));
+}
+
 TEST(ExpectedCollisions, OnAFloorHaveNoPaceUnlessParticlesRestThere) {
   const std::string ball = "law = { type = 'inelastic', restitution = 1 }\nrun.until = 30\n"
                            "initial = { type = 'list', x = [1], v = [0] }\ngravity.acceleration = -1\n";

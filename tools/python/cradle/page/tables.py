@@ -109,14 +109,14 @@ def precisions(result: Result) -> str:
     for row, table in enumerate(result.trust):
         about, reference = table.attributes, row == len(result.trust) - 1
         whole = "to the end" if about.get("right_to_end") else ""
-        six, proved = (about.get(name, -1) for name in ("six_digits_until", "proved_until"))
+        six, proved = (about.get(name, np.nan) for name in ("six_digits_until", "proved_until"))
         digits = [table[name][-1].item() if len(table[name]) else np.nan for name in ("energy_digits", "front_digits")]
         rows.append([(row, text(about["precision"])),
                      *(cell(about[name]) for name in ("coordinates", "outcome", "collisions_right")),
                      (about["collisions_right_until"], whole or number(about["collisions_right_until"], 10)),
                      (about["counts_right_until"], number(about["counts_right_until"], 10)),
-                     (six, number(six, 10) if six >= 0 else "–"),
+                     (six, number(six, 10) if np.isfinite(six) else "–"),
                      (proved, "to the end" if about.get("proved_to_end") else
-                      (number(proved, 10) if proved >= 0 else "–")),
+                      (number(proved, 10) if np.isfinite(proved) else "–")),
                      *((value, "reference" if reference else number(value, 3)) for value in digits)])
     return sortable("the same run at rising precision, each compared with the last", heads, rows)

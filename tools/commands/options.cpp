@@ -31,6 +31,11 @@ CLI::Validator within(WholeNumbers range) {
   return CLI::Validator(check, "");
 }
 
+// An empty text would be taken for the default.
+CLI::Validator not_empty() {
+  return CLI::Validator([](const std::string& text) { return text.empty() ? "nothing is given" : std::string(); }, "");
+}
+
 std::string with_example(const std::string& example, const std::string& ending) {
   return fmt::format("Example: {}\n{}", example, ending);
 }
@@ -85,11 +90,11 @@ void Command::arguments(const std::string& name, std::vector<std::string>& value
 }
 
 void Command::option(const std::string& names, std::string& value, const std::string& help, Needed needed) {
-  command_.add_option(names, value, help)->required(needed == Needed::yes);
+  command_.add_option(names, value, help)->required(needed == Needed::yes)->check(not_empty());
 }
 
 void Command::option(const std::string& names, std::optional<std::string>& value, const std::string& help) {
-  command_.add_option(names, value, help);
+  command_.add_option(names, value, help)->check(not_empty());
 }
 
 void Command::option(const std::string& names, unsigned& value, const std::string& help) {

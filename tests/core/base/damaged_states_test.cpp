@@ -10,6 +10,7 @@
 
 #include "cradle/core/chains/cluster_chain.hpp"
 #include "cradle/core/engine/sticky_gas.hpp"
+#include "cradle/tests/core/between_walls.hpp"
 #include "cradle/tests/core/compare.hpp"
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/texts.hpp"
@@ -81,6 +82,19 @@ TEST(DamagedStates, GapsThatNoRunHasAreRefused) {
   expect_gaps_refused<Heavy>(uniform_rows(60));
   const auto loading = dry<Heavy>(uniform_rows(60));
   loading.cannot_be("gaps", [](auto& run) { field<0>(field<0>(run)).masses.set(field<0>(run).first(), 0); });
+}
+
+TEST(DamagedStates, GapsToAFloorThatNoRunHasAreRefused) {
+  const auto loading = dry<GapChain<double>>(between(-1, list<double>({1, 2}, {0, 0}), Wall<double>{0, 0, 0.9}));
+  loading.loads();
+  const auto of_floor = [](auto& run) -> Gap<double>& {
+    return field<0>(field<0>(run)).gaps[field<0>(run).first()];
+  };
+  for (const double wrong : {infinity, nan}) {
+    loading.cannot_be("gaps", [&](auto& run) { of_floor(run).gap = wrong; });
+    loading.cannot_be("gaps", [&](auto& run) { of_floor(run).time = wrong; });
+    loading.cannot_be("gaps", [&](auto& run) { of_floor(run).closing = wrong; });
+  }
 }
 
 TEST(DamagedStates, FrontsThatNoRunHasAreRefused) {

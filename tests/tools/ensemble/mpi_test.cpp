@@ -2,6 +2,7 @@
 // rank was killed and the launcher ended the job, and after a signal.
 
 #include <algorithm>
+#include <regex>
 
 #include "cradle/tests/tools/ensemble/ensembles.hpp"
 
@@ -103,6 +104,26 @@ TEST_F(Mpi, SignalToOneRankStopsAllAndLosesNothing) {
   run(ensemble + "stopped.h5");  // without ranks
   expect_same("whole.h5", "stopped.h5");
   expect_no_journals();
+}
+
+// A line of progress comes after ten seconds. Replicas are so slow that no thread takes several at once: all that were
+// taken by then are in the journals, but the two that were running.
+TEST_F(Mpi, SlowProgressCountsEveryReplicaOnce) {
+  const std::string ensemble =
+      "ensemble fig6 --set initial.particles=100 --set run.until=600 --set output.snapshots=[] "
+      "--set output.profiles.times=[] --set output.masses=[] --replicas 1000000 --threads 1 --progress -o long.h5";
+  const Printed stopped =
+      shell(job(2, ensemble) + " 2> lines & pid=$!; until grep -q replicas lines || ! kill -0 $pid; do sleep 0.1; "
+                               "done; kill -TERM $(ps -o pid= --ppid $pid | sed -n 2p); wait $pid");
+  EXPECT_EQ(stopped.status, 143) << stopped.err;
+  const auto number_in = [](const std::string& text, const std::string& behind) {
+    std::smatch found;
+    return std::regex_search(text, found, std::regex("([0-9]+) " + behind)) ? std::stoull(found[1]) : 0;
+  };
+  const auto shown = number_in(contents(folder / "lines"), "of 1000000 replicas");
+  EXPECT_GT(shown, 0U) << contents(folder / "lines");
+  EXPECT_LE(shown, number_in(shell("cradle info long.h5.part", 0).out, "replicas finished") +
+                       number_in(shell("cradle info long.h5.part.1", 0).out, "replicas finished") + 2);
 }
 
 TEST_F(Mpi, FailedReplicasAreListedWhicheverRankRanThem) {

@@ -11,7 +11,7 @@ import numpy as np
 import cradle
 import small
 from cradle import program
-from cradle.drawing import cold, measured, particles, pictures, style
+from cradle.drawing import cold, measured, particles, pictures, scenarios, style, walls
 
 
 class Pictures(small.Case):
@@ -71,6 +71,37 @@ class Pictures(small.Case):
             self.assertAlmostEqual(float(cold.delay_of(row)), delay, delta=5e-7)
         self.assertEqual(cold.order(SimpleNamespace(scene={"initial": {"masses": [2, 1]}})), 0)
         self.assertAlmostEqual(cold.ENERGY, 3 * cold.FRONT - 2, delta=2e-6)
+
+    def test_the_energy_of_a_splash_is_that_of_the_particles_beyond_the_origin(self):
+        scene = {"initial.particles": 100, "run.until": 60, "output.series.points": 2, "output.snapshots": [20, 40, 60],
+                 "output.profiles.times": [20, 40, 60], "output.profiles.range": [0, 200]}
+        with cradle.run("classics/splash", scene, output="splash.h5") as result:
+            self.assertTrue(cold.is_splash(result))
+            time, energy = cold.energies(result)
+            np.testing.assert_allclose(time, [20, 40, 60])
+            direct = [sum(s["m"] * s["v"] ** 2 * (s["x"] > 0)) / 2 for s in result.snapshots]
+            np.testing.assert_allclose(energy, direct, rtol=1e-12)  # sums of some hundred terms, h = 1.1e-16 each
+
+    def test_half_of_the_replicas_collapse_between_two_numbers(self):
+        self.assertAlmostEqual(scenarios.half([(6, 0, 10), (10, 2, 10), (14, 6, 10), (18, 10, 10)]), 13)
+        self.assertTrue(np.isnan(scenarios.half([(6, 5, 10), (10, 9, 10)])))  # the crossing is not among them
+        self.assertTrue(np.isnan(scenarios.half([(6, 0, 10), (10, 4, 10)])))
+        self.assertAlmostEqual(scenarios.critical_number(7 - 4 * 3 ** 0.5), 3)
+
+    def test_heights_are_over_the_floor(self):
+        ball = {"law": {"type": "inelastic", "restitution": 0.5}, "run": {"until": 1}, "gravity": {"acceleration": -2},
+                "initial": {"type": "list", "x": [4], "v": [0]}, "output": {"series": {"times": [0, 1]}},
+                "walls": {"left": {"position": 1, "restitution": 0.5, "motion": "sine", "amplitude": 0.1,
+                                   "frequency": 3}}}
+        with cradle.run(ball, output="ball.h5") as result:
+            np.testing.assert_allclose(walls.heights(result, 1), [3, 2], rtol=1e-12)
+
+    def test_a_path_is_known_before_the_first_collision_and_after_the_last(self):
+        def at(time, x, v):
+            return {"time": time, "index": np.array([0]), "x": np.array([x]), "v": np.array([v]), "m": np.array([2.0])}
+        events = {"left": [0, 0, 7], "right": [1, 1, 8], "time": [1, 3, 3.5]}  # the third one is of others
+        legs = particles.legs_of(SimpleNamespace(events=events, snapshots=[at(0, 5.0, 1.0), at(4, 9.0, 2.0)]))
+        self.assertEqual(legs, {0: [((0, 1), (5, 6), 2, True), ((1, 3), (6, 7), 2, False), ((3, 4), (7, 9), 2, True)]})
 
     def test_a_ring_that_loses_no_energy_is_not_beside_the_sticky_gas(self):
         self.assertIn("energy", cradle.plot.names(small.tagged()))

@@ -6,6 +6,8 @@
 
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/tools/program.hpp"
+#include "cradle/tools/run/run_guards.hpp"
+#include "cradle/tools/setup/read_scene.hpp"
 
 namespace cradle::tests::run_test {
 
@@ -32,6 +34,23 @@ TEST_F(Run, ListOfTheFig2ShockGivesThePublishedCounts) {
     for (std::size_t k = 0; k < 4; ++k)
       EXPECT_NEAR(numbers(result, "series", "energy")[k], energies[k], 1e-12 * 1000) << k;
   }
+}
+
+// A state that was loaded is checked at once. Then a resumed run is checked where one that goes through is: if it
+// stops, at the same place.
+TEST_F(Run, ACheckOfALoadedStateDoesNotPutOffTheNextOne) {
+  const tools::Scene scene = tools::parse_scene("law = { type = 'inelastic', restitution = 0.9 }\nrun.until = 9\n"
+                                                "initial = { type = 'ring', particles = 20 }\n",
+                                                "scene.toml");
+  const auto engine =
+      tools::begin_engine(scene, {.interrupt = [] { return false; }, .progress = [](double, const Counts&) {}});
+  engine->advance(tools::rounding(scene)("9"), {});
+  ASSERT_GT(engine->counts().collisions, 0U);
+  tools::RunGuards guards(scene, *engine);
+  const auto checked_at = std::get<0>(tools::RunGuards::state(guards));
+  guards.check_loaded(engine->last_collision_time());
+  EXPECT_EQ(std::get<0>(tools::RunGuards::state(guards)), checked_at);
+  EXPECT_GT(guards.status(9).gap_min, 0) << "all particles were looked at";
 }
 
 // What nothing measures is not written: not as 0 either.

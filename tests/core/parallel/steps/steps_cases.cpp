@@ -80,6 +80,26 @@ TEST_F(Steps, ThatAreUndoneAtASeamAndAtWalls) {
   EXPECT_GT(on_rings, 10'000U);
   EXPECT_GT(at_walls, 10'000U);
 }
+// The same at both ends of a line, whose outermost particles are heavy: they are met again and again.
+TEST_F(Steps, LinesThatAreDenseAtTheirEnds) {
+  const std::vector<SegmentsAs> ways = on_all_vectors({.gaps = 400, .anywhere = true}, 1);
+  std::uint64_t in_steps = 0;
+  for (std::uint64_t seed = 1; seed < 6; ++seed) {
+    std::mt19937_64 random(seed);
+    std::vector<double> x, v, m(800, 1);
+    double place = 0;
+    for (int i = 0; i < 800; ++i) {
+      const bool dense = i < 60 || i >= 740;
+      place += static_cast<double>(1 + (random() >> 40)) * (dense ? 0x1p-30 : 0x1p-23);
+      x.push_back(place);
+      v.push_back((static_cast<double>(random() >> 40) - 0x1p23) * (dense ? 0x1p-28 : 0x1p-23));
+    }
+    m.front() = m.back() = 1000;
+    v.front() = 1.0 / 64, v.back() = -1.0 / 64;
+    in_steps += expect_same_in_steps<Unequal>(list(x, v, m), Law(1), {5, 20}, ways).in_steps;
+  }
+  EXPECT_GT(in_steps, 10'000U);
+}
 // Restitutions below and above 1/2, any exponents, and speeds over delta that are out of the range of vectors; also as
 // one of several laws, as programs have it.
 TEST_F(Steps, LawsThatAreVectors) {

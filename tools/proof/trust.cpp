@@ -247,16 +247,14 @@ std::string trust_table(const Scene& scene, const std::vector<Trusted>& runs) {
     const auto digits = [&](double d) { return reference || !(d >= 0) ? std::string("-") : fmt::format("{:.1f}", d); };
     const bool moved = !run.times.empty() && run.times.back() > scene.run.start.value;
     const auto last = [&](const std::vector<double>& d) { return digits(moved ? d.back() : -1); };
+    const auto time = [](double t) { return std::isnan(t) ? std::string("-") : fmt::format("{:.8g}", t); };
     const auto proved = run.proved_to_end                         ? std::string("to the end")
-                        : run.proved_time > scene.run.start.value ? fmt::format("until {:.8g}", run.proved_time)
+                        : run.proved_time > scene.run.start.value ? "until " + time(run.proved_time)
                                                                   : "-";
-    const auto upto = reference    ? std::string("(reference)")
-                      : run.to_end ? fmt::format("{:.8g} (end)", run.time)
-                                   : fmt::format("{:.8g}", run.time);
-    text +=
-        row(run.precision, run.coordinates, upto, run.collisions, fmt::format("{:.8g}", run.counts_time),
-            std::isnan(run.six_digits_time) ? "-" : fmt::format("{:.8g}", run.six_digits_time), last(run.energy_digits),
-            last(run.front_digits), digits(run.collapse_digits), fmt::format("{:.2f}", run.seconds), proved);
+    const auto upto = reference ? std::string("(reference)") : time(run.time) + (run.to_end ? " (end)" : "");
+    text += row(run.precision, run.coordinates, upto, run.collisions, time(run.counts_time), time(run.six_digits_time),
+                last(run.energy_digits), last(run.front_digits), digits(run.collapse_digits),
+                fmt::format("{:.2f}", run.seconds), proved);
   }
   text += "\nTimes are those of samples (output.series). Right: the same sequence of collisions at every particle as "
           "the reference; collisions: how many these are.\ncounts: numbers of collisions and merges. energy, front: "

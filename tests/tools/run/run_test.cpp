@@ -42,8 +42,10 @@ TEST_F(Run, ACheckOfALoadedStateDoesNotPutOffTheNextOne) {
   const tools::Scene scene = tools::parse_scene("law = { type = 'inelastic', restitution = 0.9 }\nrun.until = 9\n"
                                                 "initial = { type = 'ring', particles = 20 }\n",
                                                 "scene.toml");
-  const auto engine =
-      tools::begin_engine(scene, {.interrupt = [] { return false; }, .progress = [](double, const Counts&) {}});
+  tools::EngineOptions options;
+  options.interrupt = [] { return false; };
+  options.progress = [](double, const Counts&) {};
+  const auto engine = tools::begin_engine(scene, options);
   engine->advance(tools::rounding(scene)("9"), {});
   ASSERT_GT(engine->counts().collisions, 0U);
   tools::RunGuards guards(scene, *engine);

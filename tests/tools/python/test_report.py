@@ -178,8 +178,7 @@ class Reports(small.Case):
             with cradle.open(make()) as result:
                 command = re.search(r"<pre>(cradle .*)\n?</pre>", small.page(make))[1]
                 small.written(result.attributes["name"] + ".toml", result.scene_text.encode())
-            if "--point" not in command:
-                self.makes_again(command, make())
+            self.makes_again(command, make())
 
     def makes_again(self, command, result):
         words = shlex.split(html.unescape(command))[1:]
@@ -188,6 +187,20 @@ class Reports(small.Case):
         found = program.call(["diff", result, "again.h5"], accepted=(DONE, DIFFERS))
         self.assertEqual(found.returncode, DONE, f"{command}\n{found.stdout}")
         os.remove("again.h5")
+
+    def test_replicas_that_were_merged_are_made_in_parts(self):
+        for first, count in ((1, 2), (5, 1), (3, 1)):
+            cradle.ensemble("collapse_times", count, {"initial.particles": 20, "run.until": 5}, first=first,
+                            output=f"from{first}.h5").close()
+        program.call(["merge", "from1.h5", "from5.h5", "from3.h5", "-o", "merged.h5"])
+        page = without_pictures("merged.h5")
+        commands = re.search(r"<pre>(cradle [^<]*)</pre>", page)[1].splitlines()
+        with cradle.open("merged.h5") as result:
+            small.written(result.attributes["name"] + ".toml", result.scene_text.encode())
+        self.assertEqual(len(commands), 3)
+        for command in commands[:-1]:
+            program.call([*shlex.split(command)[1:], "--quiet"])
+        self.makes_again(commands[-1], "merged.h5")
 
     def test_commands_are_quoted_for_a_shell(self):
         program.call(["new", "my scene.toml", "--from", "collapse3"])

@@ -157,8 +157,8 @@ def microscope(result: Result) -> str:
             'JSON.parse(document.getElementById("microscope-data").textContent));\n</script>\n')
 
 
-def command_of(result: Result) -> list[str]:
-    """The words after `cradle` that make this result from its scene."""
+def commands_of(result: Result) -> list[list[str]]:
+    """The words after `cradle` that make this result from its scene; several commands of replicas that were merged."""
     name = str(result.attributes.get("name", "scene"))
     output = os.path.basename(result.path.removesuffix(".part"))
     about = result.attributes
@@ -174,23 +174,34 @@ def command_of(result: Result) -> list[str]:
         planned = result.scene.get("sweep", {})
         if not planned.get("vary") and not planned.get("points"):
             words += [word for point in result.points for word in ("--point", point.label)]
-        words += ["--replicas", str(about["replicas"] // max(1, len(result.points)))]
+        return replicas_of(result.points, words, output)
     elif result.kind == "ensemble":
-        first = int(min(result.replicas["index"].values)) if len(result.replicas.get("index", ())) else 0
-        words = ["ensemble", f"{name}.toml", "--replicas", str(about["replicas"])]
-        words += ["--first", str(first)] * (first > 0)
+        words = ["ensemble", f"{name}.toml"]
         for quantity, spread in result.table("ensemble/spread/series").items():
             low, high = (repr(float(spread.attributes[end])).removesuffix(".0") for end in ("from", "to"))
             words += ["--spread", f"{quantity}={low}:{high}:{spread.attributes['bins']}"]
+        return replicas_of([result], words, output)
     else:
         words = ["run", f"{name}.toml"]
-    return [*words, "-o", output]
+    return [[*words, "-o", output]]
+
+
+def replicas_of(ensembles: list[Result], words: list[str], output: str) -> list[list[str]]:
+    """A command for the replicas of each range without gaps, and one that merges them."""
+    held = sorted({int(number) for one in ensembles for number in one.replicas["index"].values})
+    ends = [number for number in held if number + 1 not in held]
+    ranges = [(first, last + 1 - first) for first, last in zip([n for n in held if n - 1 not in held], ends)]
+    stem, extension = os.path.splitext(output)
+    parts = [f"{stem}-{first}{extension}" for first, _ in ranges] if len(ranges) > 1 else [output]
+    commands = [[*words, "--replicas", str(count), *["--first", str(first)] * (first > 0), "-o", part]
+                for (first, count), part in zip(ranges, parts)]
+    return commands + [["merge", *parts, "-o", output]] * (len(parts) > 1)
 
 
 def again(result: Result) -> str:
     """The command and the scene, which give the same bytes."""
     scene, name = result.scene_text, str(result.attributes.get("name", "scene"))
-    command = shlex.join(["cradle", *command_of(result)])
+    command = "\n".join(shlex.join(["cradle", *words]) for words in commands_of(result))
     version = text(result.attributes.get("cradle_version", ""))
     caption = (f"<p>With this scene as {code(name + '.toml')} the same cradle, {version}, gives the same bytes:</p>\n"
                + preformatted(command))

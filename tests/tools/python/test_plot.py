@@ -1,5 +1,6 @@
 """Pictures as functions: those of the program to the byte, into given axes, with messages for what is not there."""
 import filecmp
+import functools
 import inspect
 import os
 from types import SimpleNamespace
@@ -11,7 +12,10 @@ import numpy as np
 import cradle
 import small
 from cradle import program
-from cradle.drawing import cold, measured, particles, pictures, scenarios, style, walls
+from cradle.drawing import cold, measured, particles, pictures, scenarios, settings, style, walls
+
+COOLING = {"initial.particles": 200, "run.until": 200, "output.snapshots": [], "output.series.points": 40,
+           "output.series.spacing": "linear"}
 
 
 class Pictures(small.Case):
@@ -118,6 +122,90 @@ class Pictures(small.Case):
         energy = lines["sticky gas"].get_ydata()
         clusters = energy[np.isfinite(energy)] * 1.32825736 / 0.22137623
         self.assertTrue(190 < clusters.max() < 200 and 10 <= clusters.min() < 10.5, clusters)
+
+    def test_laws_count_the_time_from_the_start(self):
+        # Nothing but axes of time depends on run.start: both pictures have the same lines, or shifted ones.
+        blast = {"initial.particles": 400, "run.until": 60, "output.profiles.range": [-80, 80]}
+        for make, scene, given, shifted in (
+                (cradle.run, "fig1", {"initial.left.particles": 100, "initial.right.particles": 300, "run.until": 80},
+                 {"output.snapshots": [0, 40, 80], "output.profiles.times": [0, 40, 80]}),
+                (cradle.run, "fig4", {"initial.particles": 40, "law.restitution": 0.9, "run.until": 16}, {}),
+                (cradle.run, "cooling", COOLING, {}),
+                (cradle.run, "cooling", COOLING | {"law.type": "inelastic", "law.restitution": 0.9}, {}),
+                (functools.partial(cradle.ensemble, replicas=2), "cooling", COOLING, {}),
+                (functools.partial(cradle.sweep, vary={"initial.variance": [1, 2]}), "cooling", COOLING, {}),
+                (cradle.run, "classics/blast", blast, {"output.profiles.times": [30, 60]}),
+                (cradle.run, "classics/domino", {"run.until": 20, "initial.speed": 2}, {}),
+                (cradle.run, "classics/splash", {"initial.particles": 200, "run.until": 1000,
+                                                 "output.profiles.range": [0, 200]},
+                 {"output.profiles.times": [200, 500, 1000]}),
+                (cradle.run, "fig11", {"initial.particles": 2000, "run.until": 1900, "output.series.points": 400},
+                 {"output.masses": [1900]}),
+                (functools.partial(cradle.sweep, vary={"law.restitution": [0.5]}, replicas=10), "collapse_times",
+                 {"initial.particles": 40, "law.cutoff": 0, "run.until": 100}, {})):
+            drawn = []
+            for start in (0, 64):
+                times = {key: [start + time for time in value] for key, value in shifted.items()}
+                until = start + given["run.until"]
+                own = given | times | {"run.start": start, "run.until": until, "output.series.spacing": "linear"}
+                with make(scene, set=own, output="late.h5", force=True) as result:
+                    shift = start / style.Units.of(result).t
+                    drawn.append({(name, panel, k): line.get_xydata().T for name in cradle.plot.names(result)
+                                  for panel, ax in enumerate(cradle.plot(result, name).axes)
+                                  for k, line in enumerate(ax.get_lines())})
+                plt.close("all")
+            self.assertEqual(drawn[0].keys(), drawn[1].keys())
+            for line, (x, y) in drawn[0].items():
+                late, value = drawn[1][line]
+                with self.subTest(scene=scene, line=line):
+                    np.testing.assert_allclose(value, y, rtol=1e-6, atol=1e-9)
+                    moved = late - shift if np.allclose(late[-1:] - shift, x[-1:], atol=1e-6) else late
+                    np.testing.assert_allclose(moved, x, rtol=1e-6, atol=1e-6)
+
+    def test_laws_are_of_the_masses_of_the_scene(self):
+        rows = {"initial.left.particles": 99, "initial.right.particles": 99, "initial.centre.mass": 0,
+                "initial.perturbation": 0, "run.until": 80, "output.series.points": 41, "output.snapshots": [40, 80],
+                "output.profiles.times": [40, 80]}
+        for masses, difference in (([1], "0"), ([2], "0"), ([2, 2], "0"), ([1, 3], None)):
+            with cradle.run("fig1", rows | {"initial.masses": masses}, output="rows.h5", force=True) as result:
+                legend = cradle.plot.sticky(result).axes[2].get_legend()
+            self.assertEqual(legend.get_title().get_text(), f"largest difference {difference}" if difference else "")
+            self.assertEqual(len(legend.get_texts()), 3 if difference else 2, masses)
+        ratios = []
+        for masses in ([1], [2]):
+            with cradle.run("cooling", COOLING | {"initial.masses": masses}, output="ring.h5", force=True) as result:
+                ratios.append([line.get_ydata() for ax in cradle.plot.cooling(result).axes[1:] for line in ax.lines])
+        for one, two in zip(*ratios):
+            np.testing.assert_allclose(two, one, rtol=1e-12)
+        with cradle.run("cooling", COOLING | {"initial.random_masses": [1, 2]}, output="ring.h5",
+                        force=True) as result:
+            self.assertEqual(len(cradle.plot.cooling(result).axes), 2)  # no ratio to a law
+
+    def test_what_is_exact_of_equal_masses_is_drawn_of_no_others(self):
+        def scene(**initial):
+            return SimpleNamespace(scene={"initial": initial})
+        for initial, mass, mean in (({}, 1, 1), ({"masses": [2, "2.0"]}, 2, 2), ({"masses": [1, 3]}, None, 2),
+                                    ({"random_masses": [1, 2]}, None, 1.5), ({"m": [1, 4, 1]}, None, 2),
+                                    ({"x": [1, 2], "m": [4, 4]}, 4, 4)):
+            self.assertEqual((settings.mass_of(scene(**initial)), settings.mean_mass(scene(**initial))), (mass, mean))
+        hot = {"law": {"type": "inelastic", "restitution": 1}, "run": {"until": 50}, "walls": {
+            "left": {"position": 0, "temperature": 2}, "right": {"position": 6, "temperature": 1}},
+               "output": {"averages": {"every": 1, "from": 10, "bins": 3}}}
+        currents = []
+        for m in ([1] * 5, [4] * 5, [1, 4, 1, 4, 1]):
+            start = {"type": "list", "x": [0.9, 2.3, 3.1, 4.2, 5.6], "v": [0.3, 1, 0.1, -1.1, 0], "m": m}
+            with cradle.run(hot | {"initial": start}, output="hot.h5", force=True) as result:
+                currents.append(measured.exact_current(result))
+        self.assertAlmostEqual(currents[0] / currents[1], 2)  # as of speeds
+        self.assertIsNone(currents[2])
+        counted = {"law": {"type": "inelastic", "restitution": 1}, "run": {"until": 5},
+                   "output": {"histograms": ["closing_speed"]}}
+        for masses, labels in (({}, ["equilibrium"]), ({"masses": [2]}, ["equilibrium"]),
+                               ({"random_masses": [1, 9]}, [])):
+            with cradle.run(counted | {"initial": {"type": "ring", "particles": 20} | masses}, output="counted.h5",
+                            force=True) as result:
+                axes = cradle.plot.histograms(result).axes[0]
+            self.assertEqual([line.get_label() for line in axes.lines if line.get_label()[0] != "_"], labels)
 
     def test_snapshots_that_are_left_out_are_counted(self):
         for times, said in ((range(10, 50, 5), ""), (range(10, 60, 5), "8 of 10 snapshots")):

@@ -2,6 +2,7 @@
 sticky gas, the dense core (core/observe/dense_core.hpp), and the rate of collisions in it."""
 import numpy as np
 
+from .settings import mean_mass, start_of
 from .style import BLUE, GREY, ORANGE, distinct, plt, shaded, shades
 
 MANY = 20         # snapshots that make a picture in space and time
@@ -76,8 +77,8 @@ def rates(result, since, units):
     """Dissipative and elastic collisions per l/2u0: mean and standard deviation, from SETTLED after `since` until the
     rows end."""
     time, *kinds = collision_rates(result)
-    used_up = result.setting("initial", "particles", np.nan) * units.t  # the sticky gas has the last of equal rows
-    late = (time > since + SETTLED * units.t) & (time < ARRIVING * used_up)
+    lasting = result.setting("initial", "particles", np.nan) * units.t  # the sticky gas has the last of equal rows
+    late = (time > since + SETTLED * units.t) & (time - start_of(result) < ARRIVING * lasting)
     return [(np.mean(values[late]) * units.t, np.std(values[late]) * units.t) if late.any() else (np.nan, np.nan)
             for values in kinds]
 
@@ -118,8 +119,8 @@ def draw_run(result, units, panels):
     draw_excess(axes[0], result, onset(result), units, BLUE)
     positive(axes[1], time, series["core_velocity_range"][late] / (scale or units.v), color=BLUE,
              label="velocity range" + (rf" / {scale:.4g}" if scale else ""))
-    positive(axes[1], time, series["core_mass"][late] / result.setting("initial", "particles", 1.0), color=ORANGE,
-             label="share of all mass")
+    whole = result.setting("initial", "particles", 1.0) * mean_mass(result)
+    positive(axes[1], time, series["core_mass"][late] / whole, color=ORANGE, label="share of all mass")
     positive(axes[2], time, series["core_width"][late] / units.x, color=BLUE, label="length with half of the mass")
     positive(axes[2], time, series["core_gap"][late] / units.x, color=ORANGE, label="median gap")
     middle, dissipative, elastic = collision_rates(result)

@@ -5,6 +5,7 @@ the two heaviest clusters, which pass through each other back and forth. Their s
 falls as t^(-1/3). A line follows a cluster, not a side."""
 import numpy as np
 
+from .settings import since_label, since_start, since_symbol
 from .style import BLUE, GREY, ORANGE, beside, note, plt, shaded, thinned
 
 DECADES, BINS, FIRST = 4.3, 13, 3  # maxima in so many logarithmic bins over the last decades; the fit begins in bin 3
@@ -55,6 +56,7 @@ def draw_clusters(result, units, panels):
     force = result.table("force")
     tracks, broken = followed(result.means["heaviest"])
     time = result.means["time"] / units.t
+    elapsed, t = since_start(result, result.means["time"]) / units.t, since_symbol(result, units.t)
     position, velocity = panels.stacked(units.position_label(), units.velocity_label(), x=units.time_label(),
                                         width=6.0, height=3.0)
     for ax, values in ((position, tracks["x"] / units.x), (velocity, tracks["v"] / units.v)):
@@ -67,14 +69,14 @@ def draw_clusters(result, units, panels):
         ax.ticklabel_format(style="sci", scilimits=(-3, 5), useMathText=True)
         for line in ax.get_lines()[:2]:
             line.set_clip_path(plt.Rectangle((0, 0), 1, 2 / 3.9, transform=ax.transAxes))
-    masses = room_above(position, (0.10, 0.65, 0.60, 0.32), units.time_label(), r"$M_{1,2}\,/\,t$")
-    share = tracks["mass"] / np.where(time > 0, time, np.nan)[:, None]
+    masses = room_above(position, (0.10, 0.65, 0.60, 0.32), units.time_label(), rf"$M_{{1,2}}\,/\,{t}$")
+    share = tracks["mass"] / np.where(elapsed > 0, elapsed, np.nan)[:, None]
     draw_tracks(masses, time, share, broken, 0.7)
     masses.set_ylim(0, 1.15 * largest(share, 0.05))
     rescaled = room_above(velocity, (0.42, 0.65, 0.56, 0.32) if force else (0.10, 0.65, 0.88, 0.32),
-                          r"$t^{1/3}$", r"$v\,t^{1/3}$")
-    swing = tracks["v"] / units.v * np.cbrt(time)[:, None]
-    draw_tracks(rescaled, np.cbrt(time), swing, broken, 0.6)
+                          rf"${t}^{{1/3}}$", rf"$v\,{t}^{{1/3}}$")
+    swing = tracks["v"] / units.v * np.cbrt(elapsed)[:, None]
+    draw_tracks(rescaled, np.cbrt(elapsed), swing, broken, 0.6)
     bound = 1.1 * largest(swing, 0.05)
     rescaled.set_ylim(-bound, bound)
     if force:
@@ -132,19 +134,22 @@ def envelope(time, values, begin=0.0):
 
 
 def draw_scaling(result, units, panels):
-    heaviest, time = result.means["heaviest"], result.means["time"] / units.t
+    heaviest, time = result.means["heaviest"], since_start(result, result.means["time"]) / units.t
     x, v = heaviest["x"], heaviest["v"]
-    begin = min(result.table("meetings").get("time", ()), default=0.0) / units.t  # before, each swings on its side
+    met = since_start(result, result.table("meetings").get("time", ()))
+    begin = min(met, default=0.0) / units.t  # before, each swings on its side
     apart, passing, *third = panels.stacked(
         units.label("separation", r"separation$\,/\,l$"), units.label("relative speed", r"relative speed$\,/\,2u_0$"),
         *[""] * bool(result.masses), height=2.3)
-    draw_envelope(apart, time, np.abs(x[:, 1] - x[:, 0]) / units.x, 1 / 3, BLUE, begin, units)
-    draw_envelope(passing, time, np.abs(v[:, 1] - v[:, 0]) / units.v, -1 / 3, ORANGE, begin, units)
+    draw_envelope(apart, time, np.abs(x[:, 1] - x[:, 0]) / units.x, 1 / 3, BLUE, begin)
+    draw_envelope(passing, time, np.abs(v[:, 1] - v[:, 0]) / units.v, -1 / 3, ORANGE, begin)
+    for ax in (apart, passing):
+        ax.set_xlabel(since_label(result, units.time_label()))
     for ax in third:
         draw_masses(ax, result.masses, units)
 
 
-def draw_envelope(ax, time, values, theory, colour, begin, units):
+def draw_envelope(ax, time, values, theory, colour, begin):
     time, values, centre, top, late, fit = envelope(time, values, begin)
     shown = time >= 10 ** (np.log10(time[-1]) - DECADES)
     ax.loglog(time[shown], values[shown], ".", ms=1.5, mew=0, color=GREY, rasterized=True, label="samples")
@@ -155,7 +160,7 @@ def draw_envelope(ax, time, values, theory, colour, begin, units):
         ax.plot(ends, np.exp(fit[1]) * ends ** fit[0], color="k", lw=1.2, label=f"fit, exponent {fit[0]:.3f}")
         middle = np.exp(np.log(top[late]).mean() - theory * np.log(centre[late]).mean())
         ax.plot(ends, middle * ends ** theory, "k--", lw=1, label=f"section VI, exponent {theory:.3f}")
-    ax.set(xlabel=units.time_label(), ylim=(top.min() / 300, None))
+    ax.set(ylim=(top.min() / 300, None))
     ax.legend(loc="lower left", ncol=2)
 
 

@@ -6,6 +6,7 @@ from fractions import Fraction
 
 import numpy as np
 
+from .settings import mean_mass, since_label, since_start
 from .style import BLUE, GREY, ORANGE, note, power, shades
 
 AMPLITUDE = 1071 / 152  # of a blast: R^3 rho/(E t^2)
@@ -37,20 +38,19 @@ def solution(size=400):
 
 
 def draw_blast(result, panels):
-    masses = [float(mass) for mass in result.scene["initial"].get("masses", [1])]
-    energy, rho = result.setting("initial", "energy"), np.mean(masses) / result.setting("initial", "spacing", 1.0)
+    energy, rho = result.setting("initial", "energy"), mean_mass(result) / result.setting("initial", "spacing", 1.0)
     axes = panels(2, 2, figsize=(7.2, 5.6))
     draw_front(axes[0, 0], result, energy, rho)
     others, (xi, *solutions) = axes.flat[1:], solution()
     for profile, spread, colour in zip(result.mean_profiles, result.profiles, shades(len(result.profiles))):
-        time = profile["time"]
+        time = since_start(result, profile["time"])
         front = np.cbrt(AMPLITUDE * energy * time ** 2 / rho)
         speed = 2 * front / (3 * time)
         place = profile["x"] / front
         shown = np.abs(place) < 1.3
         for ax, name, unit in zip(others, ("mass_density", "velocity", "temperature"), (rho, speed, speed ** 2)):
             mean = profile[name] / unit
-            ax.plot(place[shown], mean[shown], color=colour, lw=0.9, label=f"$t={power(time)}$")
+            ax.plot(place[shown], mean[shown], color=colour, lw=0.9, label=f"$t={power(profile['time'])}$")
             if result.replicas:
                 error = spread[name]["sem"] / unit
                 ax.fill_between(place[shown], (mean - error)[shown], (mean + error)[shown], color=colour, alpha=0.2,
@@ -67,8 +67,9 @@ def draw_blast(result, panels):
 def draw_front(ax, result, energy, rho):
     """R^3 rho/(E t^2) of both fronts; it tends to A as the gas forgets its initial state."""
     series = result.means
-    later = series["time"] > 0
-    time = series["time"][later]
+    time = since_start(result, series["time"])
+    later = time > 0
+    time = time[later]
     front = (series["front_right"][later] - series["front_left"][later]) / 2
     value = front ** 3 * rho / (energy * time ** 2)
     seen = np.isfinite(value) & (value < 4 * AMPLITUDE)
@@ -79,7 +80,7 @@ def draw_front(ax, result, energy, rho):
         ax.fill_between(time[seen], (value - error)[seen], (value + error)[seen], color=BLUE, alpha=0.25, lw=0)
     ax.axhline(AMPLITUDE, color="k", ls="--", label="$A=1071/152$")
     ax.axhspan(0.98 * AMPLITUDE, 1.02 * AMPLITUDE, color=GREY, alpha=0.3, lw=0, label=r"$\pm 2\,\%$")
-    ax.set(xlabel="time ($t$)", ylabel=r"$R^3\rho_0\,/\,(Et^2)$", ylim=(0, 2.5 * AMPLITUDE))
+    ax.set(xlabel=since_label(result), ylabel=r"$R^3\rho_0\,/\,(Et^2)$", ylim=(0, 2.5 * AMPLITUDE))
     ax.legend(loc="upper right")
 
 
@@ -93,15 +94,21 @@ def order(result):
     return k if k > 0 and abs(turns - (2 * k + 1)) < 1e-6 * turns else 0
 
 
+def step_of(result):
+    """The time that the first particle takes to the next one."""
+    initial = result.scene["initial"]
+    return Fraction(str(initial.get("spacing", 1))) / Fraction(str(initial.get("speed", 1)))
+
+
 def first_hits(result):
     """Heavy particles, and how much later than in the closed form each is first hit, in times between two hits."""
-    events, initial = result.events, result.scene["initial"]
-    step = Fraction(str(initial.get("spacing", 1))) / Fraction(str(initial.get("speed", 1)))
+    events, step = result.events, step_of(result)
     right = events["right"].astype(np.int64)
     before = np.maximum.accumulate(np.concatenate([[0], right[:-1]]))
     first = np.flatnonzero((right > before) & (right % 2 == 0))
     time, low, delay = events["time"].values, events["time_low"].values, delay_of(result)
-    late = [(Fraction(time[e]) + Fraction(low[e])) / step - (int(right[e]) - delay) for e in first]
+    start = Fraction(str(result.scene["run"].get("start", 0)))
+    late = [(Fraction(time[e]) + Fraction(low[e]) - start) / step - (int(right[e]) - delay) for e in first]
     return right[first], np.array(late, float)
 
 
@@ -110,11 +117,11 @@ def draw_dominoes(result, panels):
     top, below = panels.stacked("particle on the right", r"$|t_n-(n-c_k)|\,u/a$", height=2.6)
     events = result.events
     some = events["right"] <= 24
-    top.plot(events["time"][some], events["right"][some], "o", ms=3, color=GREY, label="collisions")
+    time = since_start(result, events["time"][some]) / float(step_of(result))
+    top.plot(time, events["right"][some], "o", ms=3, color=GREY, label="collisions")
     shown = particle <= 24
-    exactly = (particle - late)[shown] - float(delay_of(result))
-    top.plot(exactly, particle[shown], "x", ms=5, color=ORANGE, label="closed form")
-    top.set_xlabel(r"time $t\,u/a$")
+    top.plot(particle[shown] - float(delay_of(result)), particle[shown], "x", ms=5, color=ORANGE, label="closed form")
+    top.set_xlabel(since_label(result, r"time $t\,u/a$"))
     top.legend(loc="upper left")
     size = np.abs(late)
     precision = str(result.attributes.get("precision", ""))
@@ -138,8 +145,8 @@ def is_splash(point):
 
 
 def energies(point):
-    """Times, and M (theta + u^2)/2 of the single bin, which begins at x = 0."""
-    time = np.array([p["time"] for p in point.mean_profiles])
+    """Times since the start, and M (theta + u^2)/2 of the single bin, which begins at x = 0."""
+    time = since_start(point, [p["time"] for p in point.mean_profiles])
     width = np.array([2 * p["x"][0] for p in point.mean_profiles])
     mass, speed, temperature = (np.array([p[name][0] for p in point.mean_profiles])
                                 for name in ("mass_density", "velocity", "temperature"))
@@ -153,7 +160,7 @@ def fit(time, value):
 
 def draw_splash(points, panels):
     axes = panels(2, 2, figsize=(7.2, 5.2), sharex="col", width_ratios=(1.6, 1))
-    fronts = [(p.means["time"], p.means["front_right"]) for p in points]
+    fronts = [(since_start(p, p.means["time"]), p.means["front_right"]) for p in points]
     inside = [energies(p) for p in points]
     for row, (curves, known, label, colour) in enumerate(((fronts, FRONT, "front $R$ ($l$)", BLUE),
                                                           (inside, ENERGY, r"energy at $x>0$ ($m\,l^2/t^2$)", ORANGE))):
@@ -175,5 +182,5 @@ def draw_splash(points, panels):
             right.axhspan(mean - 2 * error, mean + 2 * error, color=colour, alpha=0.2, lw=0)
         right.set_title(f"{mean:.5f} ± {error:.5f}" if np.isfinite(error) else f"{mean:.5f}", fontsize=8)
         right.set_ylabel("exponent, last decade")
-    axes[1, 0].set_xlabel("time ($t$)")
+    axes[1, 0].set_xlabel(since_label(points[0]))
     axes[1, 1].set_xlabel("ensemble")

@@ -1,9 +1,10 @@
 """Energy against time: Fig. 4, with the number of collisions; and free cooling on a ring beside the asymptotic law of
-the sticky gas. For independent velocities of variance s^2 and mean spacing a (m = 1)
-    E/N = 0.221376226650747359 s^2 tau^(-2/3),  clusters/N = 1.32825735990448415 tau^(-2/3),  tau = s t/a,
+the sticky gas. For independent velocities of variance s^2 and mean spacing a, at t after the start,
+    E/N = 0.221376226650747359 m s^2 tau^(-2/3),  clusters/N = 1.32825735990448415 tau^(-2/3),  tau = s t/a,
 exact for t -> infinity in the sticky gas (Burgers equation with white noise); Haff's law where it is predicted."""
 import numpy as np
 
+from .settings import mass_of, since_label, since_start, start_of
 from .style import BLUE, GREEN, GREY, ORANGE, RED, note, power, thinned
 
 ENERGY, CLUSTERS = 0.221376226650747359, 1.32825735990448415
@@ -37,20 +38,23 @@ def ring_of(result):
 
 
 def sticky_law(result, time):
-    """The energy per particle; NaN before clusters form, after only FEWEST would be left, and for a few particles."""
+    """The energy per particle at times since the start; NaN before clusters form, after only FEWEST would be left, for
+    a few particles, and for unequal ones."""
     particles, speed, spacing = ring_of(result)
     with np.errstate(divide="ignore"):
         share = (speed * time / spacing) ** (-2 / 3)
     clusters = CLUSTERS * share
     holds = (clusters < 1) & (particles * clusters >= FEWEST) & (particles >= FEWEST_AT_START)
-    return np.where(holds, ENERGY * speed ** 2 * share, np.nan)
+    return np.where(holds, (mass_of(result) or np.nan) * ENERGY * speed ** 2 * share, np.nan)
 
 
 def cooled(result):
-    """Which samples come after the first meetings, their times, energies per particle, and those of the sticky gas."""
+    """Which samples come after the first meetings, their times since the start, energies per particle, and those of
+    the sticky gas."""
     particles, speed, spacing = ring_of(result)
-    later = result.means["time"] * speed / spacing > 0.03
-    time = result.means["time"][later]
+    time = since_start(result, result.means["time"])
+    later = time * speed / spacing > 0.03
+    time = time[later]
     return later, time, result.means["energy"][later] / particles, sticky_law(result, time)
 
 
@@ -62,30 +66,34 @@ def draw_cooling(result, theory, panels):
     applies = bool(np.isfinite(law).any())
     axes = panels.stacked(r"energy per particle $E\,/\,N$", *["simulation / sticky law"] * applies,
                           *["clusters per particle"] * merging, height=2.2,
-                          x=rf"time ($t$)   ($\tau=st/a$, $s={speed:.4g}$, $a={spacing:.4g}$)")
+                          x=since_label(result) + rf"   ($\tau=st/a$, $s={speed:.4g}$, $a={spacing:.4g}$)")
     axes[0].loglog(time, energy, color=BLUE, lw=1.6, label="simulation")
     if applies:
-        axes[0].plot(time, law, "k--", label=r"sticky gas, $0.2214\,s^2\tau^{-2/3}$")
+        mass = "" if mass_of(result) == 1 else r"m\,"
+        axes[0].plot(time, law, "k--", label=rf"sticky gas, $0.2214\,{mass}s^2\tau^{{-2/3}}$")
         axes[1].semilogx(time, energy / law, color=BLUE, lw=1.6)
         axes[1].axhline(1, color="k", ls="--")
         if np.nanmax(energy / law) > 10:
             axes[1].set_yscale("log")
         else:
             axes[1].set_ylim(bottom=0)
-    draw_laws(axes[0], theory, time, energy, particles)
+    draw_laws(axes[0], theory, start_of(result), time, energy, particles)
     axes[0].legend(loc="lower left")
     if merging:
         axes[-1].loglog(time, 1 - series["merges"][later] / particles, color=BLUE, lw=1.6, label="simulation")
         if applies:
-            axes[-1].plot(time, CLUSTERS / ENERGY * law / speed ** 2, "k--", label=r"sticky gas, $1.328\,\tau^{-2/3}$")
+            clusters = CLUSTERS / ENERGY * law / (mass_of(result) * speed ** 2)
+            axes[-1].plot(time, clusters, "k--", label=r"sticky gas, $1.328\,\tau^{-2/3}$")
         axes[-1].legend(loc="lower left")
 
 
-def draw_laws(ax, theory, time, energy, particles=1):
-    """The predicted energies, but that of the sticky gas, where they are not far below the measured ones."""
+def draw_laws(ax, theory, start, time, energy, particles=1):
+    """The predicted energies, but that of the sticky gas, where they are not far below the measured ones, at times
+    since the start."""
     known = [name for name in dict.fromkeys(row["quantity"] for row in theory.rows) if name.startswith("energy")]
     for quantity, colour in zip((name for name in known if "sticky" not in name), (ORANGE, GREEN, RED)):
         t, value = theory.curve(quantity)
+        t = t - start
         shown = (t >= time[0]) & (t <= time[-1]) & (value / particles > 0.3 * energy.min())
         ax.plot(t[shown], value[shown] / particles, ":", color=colour, lw=1.6, label=theory.equation(quantity))
 
@@ -123,11 +131,13 @@ def draw_energy(result, theory, units, panels):
     for quantity, line, label in (("energy", ":", cited), ("energy_sticky", "--", "sticky gas")):
         t, value = theory.curve(quantity)
         if quantity == "energy":  # the linear profiles are meant for the expanding front
-            shown = t <= 1.3 * (theory.number("turnover_time") or np.inf)
+            start = start_of(result)
+            shown = t - start <= 1.3 * ((theory.number("turnover_time") or np.inf) - start)
         else:  # a law for late times begins above the energy at the start
             shown = value <= 1.001 * series["energy"][0]
         t, value = t[shown], value[shown]
-        if len(t) and t[-1] > 0.02 * series["time"][-1]:  # else it would not be seen
+        shown, whole = (since_start(result, times[-1:]).sum() for times in (t, series["time"]))
+        if shown > 0.02 * whole:  # else it would not be seen
             top.plot(t / units.t, value / units.energy, "k" + line, lw=1.3, label=label)
     onset = theory.number("collapse_onset_time")
     if onset and onset <= series["time"][-1]:

@@ -3,6 +3,7 @@ import numpy as np
 
 from ..result import fronts
 from .energy import cooled, cools, draw_laws, ring_of
+from .settings import since_label, since_start, start_of
 from .shock import draw_slope
 from .style import BLUE, GREY, ORANGE, beside, note, shaded, thinned
 
@@ -31,6 +32,8 @@ def band(ax, x, quantity, unit, colour, **line):
 
 def draw_series(result, theory, units, panels):
     time = result.series["time"] / units.t
+    if cools(result):
+        time = since_start(result, time)
     scale = {"energy": units.energy, "front_right": units.x, "cloud_width": units.x}
     shown = [(name, label) for name, label in SERIES if name in result.series
              and (name != "front_right" or name in fronts(result)) and (result.series[name]["max"] > 0).any()]
@@ -39,7 +42,8 @@ def draw_series(result, theory, units, panels):
     shown += [(name, name.replace("_", " ")) for name in spreads if name not in dict(shown)]
     axes = panels.stacked(*(units.energy_label() if name == "energy" else
                             label + (units.label("", r"$\,/\,l$") if scale.get(name) == units.x else "")
-                            for name, label in shown), x=units.time_label(), height=2.0)
+                            for name, label in shown),
+                          x=since_label(result) if cools(result) else units.time_label(), height=2.0)
     replicas = len(result.replicas.get("index", ()))
     left = min((int(counts[-1]) for name, _ in shown if (counts := result.series[name].get("count")) is not None),
                default=replicas)
@@ -83,7 +87,7 @@ def show_cooling(axes, result, theory, time):
     law = law * ring_of(result)[0]
     if np.isfinite(law).any():
         axes[0].plot(time[later], law, "k--", lw=1, label="sticky gas")
-    draw_laws(axes[0], theory, time[later], result.series["energy"]["mean"][later])
+    draw_laws(axes[0], theory, start_of(result), time[later], result.series["energy"]["mean"][later])
     axes[0].set_yscale("log")
     axes[-1].set(xscale="log", xlim=(time[later][0], time[-1]))
 

@@ -1,7 +1,7 @@
 """What a run measures on request, with standard errors: averages over time in bins; histograms as densities, counts
 divided by their sum and by the width of the bin; correlations of tagged particles; structure factors and pair
 distributions, of a sweep those of all points. Beside them what is exact: the heat current of identical elastic
-particles between thermal walls, which pass each other, J = rho (T1 - T2) / (sqrt(pi/2) (T1^-1/2 + T2^-1/2)), m = 1;
+particles between thermal walls, which pass each other, J = n (T1 - T2) / (sqrt(pi m/2) (T1^-1/2 + T2^-1/2));
 their closing speeds in equilibrium on a ring, w/(2 T) exp(-w^2/(4 T)); 1 for places that are independent.
 """
 import math
@@ -9,6 +9,7 @@ import math
 import numpy as np
 
 from .energy import ring_of
+from .settings import mass_of
 from .style import BLUE, ORANGE, beside, distinct, note, shaded, shades, thinned
 from .sweep import label_of
 
@@ -61,12 +62,12 @@ def exact_current(result):
     moving = result.setting("gravity", "acceleration", 0.0) != 0 or any(
         result.setting("walls", f"{side}.speed", 0.0) or walls.get(side, {}).get("motion", "none") != "none"
         for side in ("left", "right"))
-    masses = result.scene.get("initial", {}).get("masses", [1])
-    if None in temperatures or moving or result.setting("law", "restitution", 0.0) != 1 or set(masses) != {1}:
+    mass = mass_of(result)
+    if None in (*temperatures, mass) or moving or result.setting("law", "restitution", 0.0) != 1:
         return None
     density, _ = with_error(result.averages, "density")
     left, right = temperatures
-    return np.mean(density) * (left - right) / (np.sqrt(np.pi / 2) * (left ** -0.5 + right ** -0.5))
+    return np.mean(density) * (left - right) / (np.sqrt(np.pi * mass / 2) * (left ** -0.5 + right ** -0.5))
 
 
 def draw_averages(result, panels):
@@ -91,7 +92,7 @@ def counted(table):
 
 def variance(result):
     """Of the velocities on a ring in equilibrium; None of others."""
-    elastic = result.setting("law", "restitution", 0.0) == 1 and "masses" not in result.scene.get("initial", {})
+    elastic = result.setting("law", "restitution", 0.0) == 1 and mass_of(result) is not None
     on_ring = result.word("initial", "type") == "ring" and result.word("initial", "velocities") == "gaussian"
     return result.setting("initial", "variance", 1.0) if elastic and on_ring else None
 
@@ -170,7 +171,7 @@ def exact_correlations(result, lags):
     initial = result.scene.get("initial", {})
     kind = [initial.get(key) for key in ("type", "positions", "velocities")]
     if (kind != ["ring", "poisson", "gaussian"] or result.setting("law", "restitution", 0.0) != 1
-            or {"masses", "random_masses"} & initial.keys()):
+            or mass_of(result) is None):
         return None
     particles, speed, spacing = ring_of(result)
     unit = spacing / speed  # of time

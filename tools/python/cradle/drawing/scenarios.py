@@ -4,6 +4,7 @@ whether the two heaviest clusters of a wet shock pass or stick (paper, section V
 (against N_c/(2 u0), section III)."""
 import numpy as np
 
+from .settings import mass_of, since_start
 from .style import BLUE, GREY, RED, SKY, shaded, shades
 
 # Of core/observe/scenario.hpp.
@@ -15,7 +16,7 @@ ENOUGH = 10  # replicas of a point of which shares are drawn
 def onsets(result, _theory, _units):
     curves = shares_of(result)
     if curves and max(len(points) for points in curves.values()) >= 3:
-        yield "onset", draw_onset, curves, any("walls" in point.scene for point in result.points)
+        yield "onset", draw_onset, result, curves
 
 
 def pictures(result, _theory, _units):
@@ -91,7 +92,7 @@ def half(points):
     return np.interp(0.5, share[crossing], number[crossing])
 
 
-def draw_onset(curves, walled, panels):
+def draw_onset(result, curves, panels):
     left, right = panels(1, 2, figsize=(7.4, 3.4))
     for (eps, points), colour in shaded(curves.items()):
         number = np.array([n for n, _, _ in points])
@@ -105,9 +106,11 @@ def draw_onset(curves, walled, panels):
     least = [min((number for number, hits, _ in points if hits), default=np.nan) for points in curves.values()]
     right.loglog(1 - eps, least, "v", ms=4, label="one replica")
     fine = np.geomspace((1 - eps).min() / 1.5, min((1 - eps).max() * 1.5, 0.95), 100)
-    right.plot(fine, np.log(4 / fine) / fine, "k--", lw=1, label=r"$\ln(4/(1-r))/(1-r)$")
-    right.plot(fine, critical_number(1 - fine) / (2 if walled else 1), "k:", lw=1,
-               label="at a wall, exact" if walled else "free space, exact")
+    walled = any("walls" in point.scene for point in result.points)
+    if all(map(mass_of, result.points)):
+        right.plot(fine, np.log(4 / fine) / fine, "k--", lw=1, label=r"$\ln(4/(1-r))/(1-r)$")
+        right.plot(fine, critical_number(1 - fine) / (2 if walled else 1), "k:", lw=1,
+                   label="at a wall, exact" if walled else "free space, exact")
     right.set(xlabel=r"$1-r$", ylabel="particles $N_c$")
     right.legend(loc="lower left")
 
@@ -179,10 +182,11 @@ def draw_collapse(result, panels):
         restitution, speed = point.setting("law", "restitution"), point.setting("initial", "speed", 0.5)
         spacing = point.setting("initial", "spacing", 1.0)
         engaged = critical_number(restitution) * spacing / (2 * speed)
-        times = known_times(point) / engaged
+        times = since_start(point, known_times(point)) / engaged
         ax.hist(times, bins=max(8, int(np.sqrt(len(times)) * 1.5)), density=True, histtype="step", lw=1.4, color=colour,
                 label=rf"$r={restitution:g}$: {times.mean():.4f} $\pm$ {times.std(ddof=1):.4f}, "
                       f"{len(times)} replicas")
-    ax.axvline(1, color=GREY, lw=0.8, zorder=0)
+    if all(map(mass_of, result.points)):  # N_c is that of equal masses
+        ax.axvline(1, color=GREY, lw=0.8, zorder=0)
     ax.set(xlabel=r"collapse time $t_c\,/\,(N_c/2u_0)$", ylabel="probability density")
     ax.legend(loc="upper left", bbox_to_anchor=(0.06, 1.0))

@@ -5,6 +5,7 @@ import numpy as np
 from . import beyond
 from .clusters import model_width
 from .energy import cooled, sticky_law
+from .settings import since_label, since_start
 from .style import BLUE, GREY, ORANGE, distinct, note, plt, shades
 
 SPEED, LOSS = "initial.speed", "law.loss"
@@ -76,12 +77,12 @@ def draw_cooling(result, panels):
     others = [p for p in points if p is not reference]
     shown = others + ([reference] if reference else [])
     labels = distinct(map(label_of, shown), shown)
-    time = points[0].means["time"]
+    time = since_start(points[0], points[0].means["time"])
     asymptotic = sticky_law(points[0], time)
     applies = bool(np.isfinite(asymptotic).any())
     top, *below = panels.stacked(
         r"energy per particle $E\,/\,N$", *[r"$E\,/\,E_{\mathrm{sticky}}$"] * (applies or reference is not None),
-        x="time ($t$)", height=2.9)
+        x=since_label(points[0]), height=2.9)
     for point, colour, label in zip(shown, [*shades(len(others)), "k"], labels):
         _, at, energy, law = cooled(point)
         line = "--" if point.law == "inelastic" else "-"

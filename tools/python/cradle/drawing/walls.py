@@ -5,6 +5,7 @@ the amplitude, with the first period doubling; of a column of beads against X = 
 import numpy as np
 
 from .particles import MARKED, few, one_falls
+from .settings import mean_mass
 from .style import BLUE, GREY, ORANGE, shaded
 
 FEW = 12  # snapshots, for quantiles against time to mean something
@@ -71,9 +72,10 @@ def floor_of(point):
 
 
 def heights(point, particles):
-    """Of the centre of mass over the place of the floor, at all samples (masses 1)."""
+    """Of the centre of mass over the place of the floor, at all samples."""
     energy = np.asarray(point.means["potential_energy"])
-    return energy / (particles * -point.setting("gravity", "acceleration")) - floor_of(point)["position"]
+    weight = particles * mean_mass(point) * -point.setting("gravity", "acceleration")
+    return energy / weight - floor_of(point)["position"]
 
 
 def doubling(restitution):

@@ -137,53 +137,53 @@ def draw_places_of_points(result, group, name, along, xlabel, ylabel, scales, pa
     axes[0].legend(fontsize=7)
 
 
-def displacement(t):
-    """The exact mean-square displacement at one time t > 0 of identical elastic particles at Poisson positions, for
-    rho = T = m = 1 (Jepsen, J. Math. Phys. 6, 405, 1965).
+def displacement(t, particles):
+    """The exact mean-square displacement at one time t > 0 of identical elastic particles at independent places on a
+    ring at rest, for rho = T = m = 1 (for infinitely many Jepsen, J. Math. Phys. 6, 405, 1965).
 
     Such particles pass each other's velocities on, so the tagged one is always the n-th in the line. It is to the right
-    of y at time t if of all lines of flight more have come from its left to the right of y than the other way; these
-    are two Poisson numbers, of means a(y) and b(y), and its own line is one more. So with their difference D,
-    P(x > y) = P(D >= 1) + P(v > y/t) P(D = 0); the mean square is 4 times the integral of y P(x > y).
+    of y at time t if of all lines of flight more have come from its left to the right of y than the other way; with
+    their difference D, P(x > y) = P(D >= 1), and the mean square is 4 times the integral of y P(x > y). Unrolled, a
+    particle has a line in every length L of the ring. With w = v t - y the lines of another one, at random places, add
+    to D the whole numbers q beside w/L with the probabilities 1 - |w/L - q|; its own add w/L, rounded up. Velocities
+    are independent here: of a ring at rest the mean velocity, of variance T/N, is taken off, and t^2/N with it. After
+    t = 2 L all places are random, to less than rounding, and the mean square stays (N - 1)/6.
     """
-    largest = 8 * max(min(t, math.sqrt(t)), 1e-3 * t)  # of the displacements that matter
-    y = np.linspace(0, largest, 801)
-    u = y / t
-    beyond = 0.5 * np.array([math.erfc(each / math.sqrt(2)) for each in u])  # P(v > y/t)
-    b = t * np.exp(-u ** 2 / 2) / math.sqrt(2 * math.pi) + y * (1 - beyond)
-    a = b - y
+    t = min(t, 2.0 * particles)
+    largest = 8 * max(min(t, math.sqrt(t)), t / math.sqrt(particles))  # of the displacements that matter
+    y = np.linspace(0, largest, 101)
+    turns = np.arange(math.floor(-(8 * t + largest) / particles) - 1, math.ceil(8 * t / particles) + 3)
+    u = np.add.outer(y, turns * particles) / t
+    faster = np.array([[math.erfc(each / math.sqrt(2)) / 2 for each in row] for row in u])  # P(v > u)
+    ahead = (np.exp(-u ** 2 / 2) / math.sqrt(2 * math.pi) - u * faster) * t / particles  # the mean positive w/L - q
+    other, own = np.diff(ahead, 2), -np.diff(faster)[:, :-1]  # P(q) of a line
     # The distribution of D from its characteristic function, on points that its spread resolves.
-    widest = min(1, math.sqrt(10 / b[0]))  # of half a turn: beyond, less than exp(-40)
-    points = 64 + int(16 * widest * (math.sqrt(2 * b[0]) + largest))
+    spread = (particles - 1) * (other @ turns[1:-1] ** 2)[0]
+    widest = min(1, math.sqrt(20 / spread)) if spread > 0 else 1  # of half a turn: beyond, less than exp(-40)
+    points = 64 + int(16 * widest * (math.sqrt(spread) + largest + len(turns)))
     angle = (np.arange(points) + 0.5) * (widest * math.pi / points)
-    size = np.exp(-np.multiply.outer(a + b, 1 - np.cos(angle)))
-    turned = np.multiply.outer(a - b, np.sin(angle))
-    zero = widest * (size * np.cos(turned)).mean(axis=1)  # P(D = 0)
-    more = widest * (size * np.sin(turned) / np.tan(angle / 2)).mean(axis=1)  # P(D >= 1) - P(D <= -1)
-    right = 0.5 * (1 - zero + more) + beyond * zero
-    return 4 * (y * right).sum() * y[1]
+    wave = np.exp(1j * np.multiply.outer(turns[1:-1], angle))
+    one = other @ wave
+    size = np.abs(one) ** (particles - 1) * np.exp(1j * (particles - 1) * np.angle(one)) * (own @ wave)
+    zero = widest * size.real.mean(axis=1)  # P(D = 0)
+    more = widest * (size.imag / np.tan(angle / 2)).mean(axis=1)  # P(D >= 1) - P(D <= -1)
+    # The sum over steps h is less than the integral by the first term of Euler and Maclaurin, h^2/12 of the slope 1/2.
+    return 2 * (y * (1 - zero + more)).sum() * y[1] + y[1] ** 2 / 6 - t ** 2 / particles
 
 
 def exact_correlations(result, lags):
-    """Mean squares and autocorrelations, half of their second derivatives, at these lags; None of other particles. On
-    a ring of N at rest as a whole the mean square is less by T t^2/N: the mean velocity, of variance T/N, is taken off.
-    """
+    """Mean squares and autocorrelations, half of their second derivatives, at these lags; None of other particles."""
     initial = result.scene.get("initial", {})
     kind = [initial.get(key) for key in ("type", "positions", "velocities")]
     if (kind != ["ring", "poisson", "gaussian"] or result.setting("law", "restitution", 0.0) != 1
             or mass_of(result) is None):
         return None
     particles, speed, spacing = ring_of(result)
-    unit = spacing / speed  # of time
-
-    def squares(t):
-        return displacement(t) - t ** 2 / particles
-
-    def products(t):
-        step = 0.02 * t
-        return (squares(t + step) - 2 * squares(t) + squares(t - step)) / (2 * step ** 2)
-    times = np.asarray(lags) / unit
-    return spacing ** 2 * np.array([squares(t) for t in times]), speed ** 2 * np.array([products(t) for t in times])
+    times = np.asarray(lags) * speed / spacing
+    step = 0.02
+    before, now, after = ([displacement(t * (1 + k), particles) for t in times] for k in (-step, 0, step))
+    products = np.diff([before, now, after], 2, axis=0)[0] / (2 * (step * times) ** 2)
+    return spacing ** 2 * np.array(now), speed ** 2 * products
 
 
 def draw_correlations(result, panels):

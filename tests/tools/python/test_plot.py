@@ -66,7 +66,7 @@ class Pictures(small.Case):
         ring = {"law": {"type": "inelastic", "restitution": 1}, "run": {"until": 6}, "output": {
             "series": {"points": 2}, "correlations": {"every": 0.5, "longest": 4}}, "initial": {
                 "type": "ring", "positions": "poisson", "particles": 8, "length": 4, "variance": 2, "masses": [3]}}
-        with cradle.ensemble(ring, 1000, output="ring.h5") as result:
+        with cradle.ensemble(ring, 1000, output="ring.h5", force=True) as result:
             lag = np.asarray(result.correlations["lag"])[1:]
             for name, exact in zip(("msd", "vacf"), measured.exact_correlations(result, lag)):
                 mean, error = (values[1:] for values in measured.with_error(result.correlations, name))

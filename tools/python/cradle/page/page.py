@@ -188,9 +188,9 @@ def commands_of(result: Result) -> list[list[str]]:
 
 def replicas_of(ensembles: list[Result], words: list[str], output: str) -> list[list[str]]:
     """A command for the replicas of each range without gaps, and one that merges them."""
-    held = sorted({int(number) for one in ensembles for number in one.replicas["index"].values})
-    ends = [number for number in held if number + 1 not in held]
-    ranges = [(first, last + 1 - first) for first, last in zip([n for n in held if n - 1 not in held], ends)]
+    held = {int(number) for one in ensembles for number in one.replicas["index"].values}
+    begins, ends = (sorted(number for number in held if number + step not in held) for step in (-1, 1))
+    ranges = [(first, last + 1 - first) for first, last in zip(begins, ends)]
     stem, extension = os.path.splitext(output)
     parts = [f"{stem}-{first}{extension}" for first, _ in ranges] if len(ranges) > 1 else [output]
     commands = [[*words, "--replicas", str(count), *["--first", str(first)] * (first > 0), "-o", part]

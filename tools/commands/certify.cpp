@@ -44,7 +44,7 @@ Exit run_certify(const CertifyArguments& options) {
   Certified run = certify(scene, how);
   const std::string &report = run.outcome.report,
                     text = certificate_text(run) + (options.quiet ? "" : attempts_text(run)) +
-                           (report.empty() ? "" : "estimated by the run:\n" + report),
+                           (report.empty() ? "" : "by the run, not checked by the proof:\n" + report),
                     warning = run.outcome.warning;
   const bool proved = run.proved();
   Result result = certified_result(std::move(run));

@@ -106,14 +106,6 @@ std::string Certified::undecided() const {
 
 std::string Certified::not_proved() const {
   std::vector<std::string> all;
-  if (const auto& open = certificate.open_samples; !open.empty()) {
-    constexpr std::size_t most = 6;
-    const std::span named(open.data(), std::min(open.size(), most));
-    all.push_back(fmt::format("what the run says of t = {}{}: collisions fall there, and whether just before or just "
-                              "after is open",
-                              fmt::join(named, ", "),
-                              open.size() > most ? fmt::format(" and {} more times", open.size() - most) : ""));
-  }
   if (!certificate.doubt && outcome.end == RunEnd::collapsed)
     all.push_back(
         "that infinitely many collisions follow, complete at the run's t_c to within its bound: of that there "
@@ -121,6 +113,16 @@ std::string Certified::not_proved() const {
   if (!certificate.doubt && outcome.end == RunEnd::unproved)
     all.push_back("that this is an inelastic collapse, and when it is complete; that is an estimate of the run, which "
                   "ended at the last collision that is proved");
+  if (const auto& open = certificate.open_samples; !open.empty()) {
+    constexpr std::size_t most = 6;
+    std::vector<std::string> named;
+    for (const std::string& time : std::span(open).first(std::min(open.size(), most)))
+      named.push_back(shown_time(time));
+    all.push_back(fmt::format("what the rows at t = {}{} say: collisions fall there, and whether just before or just "
+                              "after is open",
+                              fmt::join(named, ", "),
+                              open.size() > most ? fmt::format(" and {} more times", open.size() - most) : ""));
+  }
   return fmt::format("{}", fmt::join(all, "; "));
 }
 

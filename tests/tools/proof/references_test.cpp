@@ -452,7 +452,8 @@ template <class T> struct Comparison {
     ++tally.numbers;
     EXPECT_TRUE(low <= x + slack(x) && x - slack(x) <= high)
         << what << " " << static_cast<double>(x) << " is not from " << static_cast<double>(low) << " to "
-        << static_cast<double>(high);
+        << static_cast<double>(high) << ", above the ends by " << static_cast<double>(T(x - low)) << " and "
+        << static_cast<double>(T(x - high));
   }
   void within(const std::string& what, const Enclosed& bounds, const T& x) {
     if (std::isfinite(bounds.doubles.low)) between(what, T(bounds.doubles.low), x, T(bounds.doubles.high));

@@ -87,9 +87,7 @@ TEST(DamagedStates, GapsThatNoRunHasAreRefused) {
 TEST(DamagedStates, GapsToAFloorThatNoRunHasAreRefused) {
   const auto loading = dry<GapChain<double>>(between(-1, list<double>({1, 2}, {0, 0}), Wall<double>{0, 0, 0.9}));
   loading.loads();
-  const auto of_floor = [](auto& run) -> Gap<double>& {
-    return field<0>(field<0>(run)).gaps[field<0>(run).first()];
-  };
+  const auto of_floor = [](auto& run) -> Gap<double>& { return field<0>(field<0>(run)).gaps[field<0>(run).first()]; };
   for (const double wrong : {infinity, nan}) {
     loading.cannot_be("gaps", [&](auto& run) { of_floor(run).gap = wrong; });
     loading.cannot_be("gaps", [&](auto& run) { of_floor(run).time = wrong; });

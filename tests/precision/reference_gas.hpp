@@ -67,7 +67,8 @@ template <class T> struct Gas {
     std::optional<T> first;
     std::vector<std::int64_t> together;  // gaps, by the cell on their left; -1: the left wall
     const auto may_close = [&](std::int64_t gap, std::optional<T> due) {
-      if (due && *due - time < T(1e-60)) due = time;  // which rounding parts where particles touch
+      // Rounding parts what is at one time where particles touch; rationals do not.
+      if (!std::numeric_limits<T>::is_exact && due && *due - time < T(1e-60)) due = time;
       if (due && (!first || *due < *first)) first = due, together.clear();
       if (due && *due == *first) together.push_back(gap);
     };

@@ -346,7 +346,10 @@ const std::vector<Field> fields_after_walls{
      "the points are spread over the time up to here, and continue with the same spacing; without it, up to run.until. "
      "`cradle resume --until` writes it"},
     {"output.series.spacing", output_of<&Output::series, &Series::spacing>, "", "\"linear\"", "linear | log",
-     &by_points, "how the samples of the series are spaced"},
+     &by_points,
+     "log: evenly in the logarithm of the time since run.start, from a millionth of the run on, after a first sample "
+     "at "
+     "run.start"},
     {"output.snapshots", output_of<&Output::snapshots>, "t", "[]", within_run, &always,
      "times at which all active particles are written"},
     {"output.profiles.times", output_of<&Output::profiles, &Profiles::times>, "t", "[]", within_run, &always,

@@ -348,8 +348,7 @@ const std::vector<Field> fields_after_walls{
     {"output.series.spacing", output_of<&Output::series, &Series::spacing>, "", "\"linear\"", "linear | log",
      &by_points,
      "log: evenly in the logarithm of the time since run.start, from a millionth of the run on, after a first sample "
-     "at "
-     "run.start"},
+     "at run.start"},
     {"output.snapshots", output_of<&Output::snapshots>, "t", "[]", within_run, &always,
      "times at which all active particles are written"},
     {"output.profiles.times", output_of<&Output::profiles, &Profiles::times>, "t", "[]", within_run, &always,

@@ -3,10 +3,7 @@
 // do twenty thousand of the wet shock (E_loss = 1e-4). All gaps are held from the start, since a streamed chain may
 // allocate when it grows. If clusters merge and rows stream in, the chain is laid out anew from time to time: a few
 // blocks of memory for every few dozen collisions.
-#include <gtest/gtest.h>
-
 #include <atomic>
-#include <cstdint>
 #include <cstdlib>
 
 #include "cradle/core/chains/cluster_chain.hpp"

@@ -1,11 +1,5 @@
 // Balls enclose: the result of every operation on random balls contains the exact results for the numbers in them,
 // above all for their ends; comparisons are certain or open; decimals and doubles are rounded outwards.
-#include <array>
-#include <concepts>
-#include <vector>
-
-#include <gtest/gtest.h>
-
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #ifdef CRADLE_WITH_MPFR
 #include <boost/multiprecision/mpfr.hpp>

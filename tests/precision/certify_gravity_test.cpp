@@ -1,13 +1,6 @@
 // Proofs with walls under gravity, of single particles by hand: what is open and what is refuted, above all of one that
 // touches a ceiling on its flight; a bouncing ball is known up to the rounding of sums. (Scenes drawn at random:
 // certify_drawn_test.cpp.)
-#include <memory>
-#include <optional>
-#include <vector>
-
-#include <gtest/gtest.h>
-
-#include "cradle/core/initial/rows.hpp"
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/precision/drawn_scenes.hpp"
 

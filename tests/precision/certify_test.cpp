@@ -1,16 +1,6 @@
 // The checker of proofs, scene by scene: what is open and what is refuted, with walls too; collisions of long runs side
 // by side are those of one by one; the averaged errors of a restitution that depends on the speed; exp(-x^s) lies in
 // its ball. (Scenes drawn at random: certify_drawn_test.cpp.)
-#include <algorithm>
-#include <memory>
-#include <optional>
-#include <span>
-#include <vector>
-
-#include <gtest/gtest.h>
-
-#include "cradle/core/initial/gas.hpp"
-#include "cradle/core/initial/rows.hpp"
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/precision/drawn_scenes.hpp"
 #include "cradle/tests/precision/every_scalar.hpp"

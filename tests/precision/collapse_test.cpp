@@ -6,12 +6,7 @@
 // six particles, with walls and unequal masses, are in every type reported to collapse only if they do so with 60
 // digits, down to gaps of 1e-3000; the stated error of t_c bounds the true error in each case, and is at most a hundred
 // times as large in half of them.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
 #include <iostream>
-#include <optional>
 #include <random>
 
 #include "cradle/core/initial/walled.hpp"

@@ -3,12 +3,6 @@
 // collisions made are the inversions of x_i + v_i t. Proves: counts and velocities are exact (velocities of these
 // fixtures are sums of exact numbers), positions right to rounding; lattices, and all particles at one point. (In
 // rational arithmetic: exact_gas_test.cpp.)
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <utility>
-#include <vector>
-
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/precision/every_scalar.hpp"
 

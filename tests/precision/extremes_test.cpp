@@ -3,12 +3,6 @@
 // times, a run ends as it should, without a hang and without a lost order; the velocity cut-off takes effect exactly
 // below its value; a light particle between a wall that takes energy and a heavy particle, elastic at low speeds, comes
 // to an end in every type, also in types with unlimited exponents.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <utility>
-
 #include "cradle/core/initial/walled.hpp"
 #include "cradle/tests/core/compare.hpp"
 #include "cradle/tests/core/fixtures.hpp"

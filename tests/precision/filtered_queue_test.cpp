@@ -3,10 +3,6 @@
 // time to the last bit: in collapses, in shocks, in crowds and lattices, where many collisions are simultaneous, and
 // under the wet law, where particles pass, merge and stream in. The number of index bits in a key changes no bit of a
 // run. (A loop without a queue, from the start: random_scenes_test.cpp.)
-#include <gtest/gtest.h>
-
-#include <cstdint>
-
 #include "cradle/core/chains/cluster_chain.hpp"
 #include "cradle/tests/core/compare.hpp"
 #include "cradle/tests/core/fixtures.hpp"

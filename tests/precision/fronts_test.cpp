@@ -21,8 +21,6 @@
 // t.
 #ifdef CRADLE_WITH_MPFR
 
-#include <gtest/gtest.h>
-
 #include "cradle/core/chains/cluster_chain.hpp"
 #include "cradle/core/theory/inelastic_shock.hpp"
 #include "cradle/core/theory/wet_shock.hpp"

@@ -3,15 +3,7 @@
 // numbers of their own, however they are moved about in memory; zeros and signs are right; saved numbers come back.
 #ifdef CRADLE_WITH_MPFR
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
 #include <random>
-#include <stdexcept>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "cradle/core/base/state.hpp"
 #include "cradle/tests/precision/every_scalar.hpp"

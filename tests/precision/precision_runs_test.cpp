@@ -19,8 +19,6 @@
 // difference and of the quotient g_0/z is off by 12 v (t_c - t_0) at most.
 #ifdef CRADLE_WITH_MPFR
 
-#include <gtest/gtest.h>
-
 #include "cradle/tests/core/compare.hpp"
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/core/slow_loop.hpp"

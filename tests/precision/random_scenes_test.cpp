@@ -2,11 +2,6 @@
 // silent, energy is never gained), a loop without a queue makes the same collisions, a run saved at random moments and
 // loaded again continues with the same bits, and so does one that is inspected in between.
 // RC_PARAMS="max_success=10000" makes it more; CTest sets the seed.
-#include <memory>
-#include <numeric>
-#include <vector>
-
-#include <gtest/gtest.h>
 #include <rapidcheck.h>
 
 #include "cradle/core/base/state.hpp"

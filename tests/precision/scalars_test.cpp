@@ -4,12 +4,6 @@
 // its exponents; infinity and NaN, if they are claimed, exist and behave as such; and for any numeric_limits a run
 // refuses to advance to an infinite time or to NaN, and can then continue. (In double-double a run to an infinite time
 // used to make no collisions, without a message; in double NaN overwrote memory.)
-#include <cmath>
-#include <concepts>
-#include <stdexcept>
-
-#include <gtest/gtest.h>
-
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/precision/every_scalar.hpp"
 #include "cradle/tests/texts.hpp"

@@ -1,10 +1,5 @@
 // Shaken walls in every scalar type: pi, sine and cosine; whole numbers of any size; the search for a collision ends; a
 // column, in all types the same collisions. When gaps to them close: wall_gaps_test.cpp.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <optional>
-
 #include "cradle/core/initial/walled.hpp"
 #include "cradle/core/observe/configuration_statistics.hpp"
 #include "cradle/core/observe/sample.hpp"

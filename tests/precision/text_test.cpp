@@ -3,12 +3,8 @@
 // double are kept if the type can hold them; anything but a finite decimal literal is refused.
 #ifdef CRADLE_WITH_MPFR
 
-#include <gtest/gtest.h>
-
 #include <boost/multiprecision/cpp_bin_float.hpp>
-#include <cmath>
 #include <random>
-#include <string>
 
 #include "cradle/tests/precision/every_scalar.hpp"
 #include "cradle/tests/texts.hpp"

@@ -2,12 +2,6 @@
 // random gaps, against 100 digits. To shaken walls: random gaps, grazing ones among them, against formulas of their own
 // in 100 digits, close never later than they do, and at the speed that they have then. (A column:
 // shaken_walls_test.cpp.)
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <optional>
-#include <vector>
-
 #include "cradle/core/initial/walled.hpp"
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/precision/every_scalar.hpp"

@@ -3,10 +3,6 @@
 // from both sides.
 #include "cradle/core/theory/inelastic_collapse.hpp"
 
-#include <gtest/gtest.h>
-
-#include <array>
-
 #include "cradle/core/theory/inelastic_shock.hpp"
 #include "cradle/tests/core/digits.hpp"
 #include "cradle/tests/core/fixtures.hpp"

@@ -4,13 +4,7 @@
 // roundings.
 #include "cradle/core/theory/inelastic_shock.hpp"
 
-#include <gtest/gtest.h>
-
 #include <array>
-#include <cmath>
-#include <cstdint>
-#include <limits>
-#include <string>
 
 #include "cradle/tests/core/digits.hpp"
 

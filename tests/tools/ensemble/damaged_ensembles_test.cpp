@@ -1,8 +1,4 @@
 // Ensembles whose parts contradict each other: merging or continuing them would give wrong numbers, so it is refused.
-
-#include <algorithm>
-#include <functional>
-
 #include "cradle/tests/tools/ensemble/ensembles.hpp"
 #include "cradle/tools/ensemble/state.hpp"
 #include "cradle/tools/result/writer.hpp"

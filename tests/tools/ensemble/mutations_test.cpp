@@ -1,10 +1,8 @@
 // Random damage to result files: after any change the code behind info, export, plot and merge reads the file correctly
 // or refuses it with a message and a documented status; it never crashes and never takes long. CRADLE_MUTATIONS=2000
 // makes 2000 changes instead of 100.
-
 #include <cstdio>
 #include <ctime>
-#include <map>
 
 #include "cradle/tests/tools/ensemble/ensembles.hpp"
 #include "cradle/tests/tools/faults.hpp"

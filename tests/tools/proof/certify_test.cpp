@@ -1,7 +1,5 @@
 // Proofs of replicas. (Bounds in files: references_test.cpp and agreement_test.cpp. Single runs, every law that can be
 // proved, threads, and where proofs end: tests/tools/outputs.txt. What is refused: tests/tools/messages.txt.)
-#include <cmath>
-
 #include "cradle/tests/tools/program.hpp"
 
 namespace cradle::tests::certify_program_test {

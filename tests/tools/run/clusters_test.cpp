@@ -1,10 +1,6 @@
 // Scenes of two clusters, equation (16), as a user runs them: the layout of a result, both scenarios of Fig. 9, Fig. 10
 // with the exponents of (17), and the wet rule where they meet. (The force, the same bytes:
 // tests/tools/run/outputs.txt.)
-#include <algorithm>
-#include <array>
-#include <cmath>
-
 #include "cradle/core/theory/wet_zone.hpp"
 #include "cradle/tests/tools/program.hpp"
 

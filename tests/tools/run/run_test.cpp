@@ -1,9 +1,6 @@
 // The program from scene to file: the Fig. 2 shock from a list of particles against counts of an independent
 // event-driven N-particle program (identical in double, binary128 and 100 digits). (The three-particle collapse against
 // its closed form, and that two runs give the same bytes: tests/tools/run/outputs.txt.)
-
-#include <cmath>
-
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/tools/program.hpp"
 #include "cradle/tools/run/run_guards.hpp"

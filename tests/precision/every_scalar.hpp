@@ -8,11 +8,6 @@
 #include <boost/multiprecision/mpfr.hpp>
 #endif
 
-#include <concepts>
-#include <limits>
-#include <string>
-#include <vector>
-
 #include "cradle/core/engine/simulation.hpp"
 #include "cradle/precision/scalars.hpp"
 

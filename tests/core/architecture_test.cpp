@@ -7,18 +7,13 @@
 //
 // Documents: links between the pages lead to files and headlines that are there, every folder of core/, and precision/,
 // has a page that names its headers, and files named in these pages or in a comment exist.
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <map>
-#include <regex>
-#include <set>
 #include <sstream>
-#include <string>
 #include <vector>
 
 #include "cradle/tests/places.hpp"

@@ -2,12 +2,6 @@
 // Particles between walls that are at rest, move, are hot or are shaken, with or without gravity; the runs made of
 // them, and what holds in each.
 
-#include <cmath>
-#include <memory>
-#include <optional>
-#include <type_traits>
-#include <utility>
-
 #include "cradle/core/initial/walled.hpp"
 #include "cradle/core/observe/configuration_statistics.hpp"
 #include "cradle/core/observe/guards.hpp"

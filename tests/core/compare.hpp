@@ -5,12 +5,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <initializer_list>
-#include <map>
-#include <stdexcept>
-#include <vector>
-
 #include "cradle/core/base/state.hpp"
 #include "cradle/core/chains/configuration.hpp"
 #include "cradle/core/engine/simulation.hpp"

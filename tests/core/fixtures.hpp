@@ -6,15 +6,7 @@
 //   rmix    x_i = i + (h & 0x3FF)/2048,  v_i = (((h >> 20) & 0x3FFF) - 8192)/8192
 //   rshock  x_i = (2 i - N + 1)/2 + ((h & 0x3FFFF) - 131072)/2^28,  v = +u0 for i < N/2, else -u0
 
-#include <array>
-#include <cmath>
-#include <memory>
-#include <numeric>
-#include <optional>
 #include <ostream>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "cradle/core/base/counter_rng.hpp"
 #include "cradle/core/chains/configuration.hpp"

@@ -1,10 +1,7 @@
 #pragma once
 // Replicas whose values are difficult for the arithmetic of statistics.
 
-#include <cmath>
-#include <cstdint>
 #include <numeric>
-#include <vector>
 
 #include "cradle/core/base/counter_rng.hpp"
 #include "cradle/core/ensemble/tree.hpp"

@@ -2,14 +2,6 @@
 // Compares runs in segments with the plain loop, bit for bit: state, counts, energy, account, at several times; and, of
 // runs with an observer, every collision.
 
-#include <gtest/gtest.h>
-
-#include <array>
-#include <bit>
-#include <cstdint>
-#include <type_traits>
-#include <vector>
-
 #include "cradle/core/ensemble/executor.hpp"
 #include "cradle/core/initial/walled.hpp"
 #include "cradle/core/parallel/segments.hpp"

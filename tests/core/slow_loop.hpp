@@ -5,9 +5,6 @@
 
 #include <gtest/gtest.h>
 
-#include <optional>
-#include <utility>
-
 #include "cradle/core/chains/chain.hpp"
 #include "cradle/core/engine/simulation.hpp"
 #include "cradle/core/queue/event_queue.hpp"

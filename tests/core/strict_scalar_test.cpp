@@ -2,13 +2,7 @@
 // Real; the general code, written for types whose queue keys are rounded times, makes the same collisions as the code
 // for double and gives the same bits, and so do the theories; observers require nothing of a scalar that a rational
 // lacks.
-#include <gtest/gtest.h>
-
-#include <cmath>
 #include <compare>
-#include <concepts>
-#include <limits>
-#include <type_traits>
 
 #include "cradle/core/chains/cluster_chain.hpp"
 #include "cradle/core/engine/sticky_gas.hpp"

@@ -2,8 +2,6 @@
 // Reference numbers for tests of the wet shock's theory, from the validation table.
 
 #include <array>
-#include <cstdint>
-#include <limits>
 
 #include "cradle/core/theory/wet_shock.hpp"
 #include "cradle/tests/core/digits.hpp"

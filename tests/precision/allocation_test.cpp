@@ -3,10 +3,7 @@
 // do twenty thousand of the wet shock (E_loss = 1e-4). All gaps are held from the start, since a streamed chain may
 // allocate when it grows. If clusters merge and rows stream in, the chain is laid out anew from time to time: a few
 // blocks of memory for every few dozen collisions.
-#include <gtest/gtest.h>
-
 #include <atomic>
-#include <cstdint>
 #include <cstdlib>
 
 #include "cradle/core/chains/cluster_chain.hpp"
@@ -61,14 +58,12 @@ template <class Run> void expect_none(Run run, int until, std::uint64_t least_co
   EXPECT_EQ(after - before, 0U);
 }
 
-TYPED_TEST(Allocations, NoneInAHundredThousandCollisions) {
-  using T = typename TypeParam::Scalar;
+PRECISION_TEST(Allocations, NoneInAHundredThousandCollisions) {
   const Inelastic<T> law(from_text<T>(".999"), from_text<T>("1e-5"));
   expect_none(gap_run(rshock<T>(8000), law, {}, T(0), {.hold_all = true}), 600, 90000);
 }
 
-TYPED_TEST(Allocations, NoneInTwentyThousandWetCollisions) {
-  using T = typename TypeParam::Scalar;
+PRECISION_TEST(Allocations, NoneInTwentyThousandWetCollisions) {
   const Wet<T> law(from_text<T>("1e-4"));
   expect_none(Simulation(law, ClusterChain<T>(rshock<T>(8000), T(0), true)), 400, 20000);
 }
@@ -76,8 +71,7 @@ TYPED_TEST(Allocations, NoneInTwentyThousandWetCollisions) {
 // The slow wet shock of Fig. 11, whose zone of some tens of particles changes all through. A new layout takes four
 // blocks (cells, lags, the list of cells kept, the queue), and there is one for every 12 cells vacated or 24 particles
 // taken in at most; to a collision in three there is a merger.
-TYPED_TEST(Allocations, FewWhereParticlesComeInAndMerge) {
-  using T = typename TypeParam::Scalar;
+PRECISION_TEST(Allocations, FewWhereParticlesComeInAndMerge) {
   Simulation run(Wet<T>(from_text<T>(".05")), ClusterChain<T>(rshock<T>(200000), T(0)));
   ASSERT_EQ(run.advance(T(1000)), Status::reached);
   const std::uint64_t collisions = run.counts().collisions, before = allocations;

@@ -1,11 +1,5 @@
 // Balls enclose: the result of every operation on random balls contains the exact results for the numbers in them,
 // above all for their ends; comparisons are certain or open; decimals and doubles are rounded outwards.
-#include <array>
-#include <concepts>
-#include <vector>
-
-#include <gtest/gtest.h>
-
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #ifdef CRADLE_WITH_MPFR
 #include <boost/multiprecision/mpfr.hpp>
@@ -28,9 +22,8 @@ template <int Limbs> Rational exact(const Mpfr<Limbs>& x) {
 }
 #endif
 
-template <class P> using Balls = InPrecision<P>;
 using Midpoints = Joined<testing::Types<Precision<double_double>>, Mpfr50>::Types;
-TYPED_TEST_SUITE(Balls, Midpoints, PrecisionName);
+PRECISION_SUITE(Balls, Midpoints);
 
 template <class M> struct Draws {
   using B = Ball<M>;
@@ -61,9 +54,9 @@ template <class M> void expect_holds(const Ball<M>& x, const Rational& number) {
       << to_double(x.middle()) << ", radius " << x.radius();  // rationals may have thousands of digits
 }
 
-TYPED_TEST(Balls, HoldWhatTheOperationsGive) {
-  using B = Ball<typename TypeParam::Scalar>;
-  Draws<typename TypeParam::Scalar> draws;
+PRECISION_TEST(Balls, HoldWhatTheOperationsGive) {
+  using B = Ball<T>;
+  Draws<T> draws;
   std::size_t useful = 0;
   for (int k = 0; k < 1500; ++k) {
     const B x = draws.ball(), y = draws.ball();
@@ -91,14 +84,13 @@ template <int Limbs> Mpfr<Limbs> scaled(const Mpfr<Limbs>& x, int exponent) { re
 #endif
 
 // At the lower end of the range, where terms underflow and are divided by numbers as small.
-TYPED_TEST(Balls, HoldQuotientsAndSumsOfTheLeastNumbers) {
-  using M = typename TypeParam::Scalar;
-  using B = Ball<M>;
-  const int least = std::same_as<M, double_double> ? -1018 : -16390;
-  Draws<M> draws;
+PRECISION_TEST(Balls, HoldQuotientsAndSumsOfTheLeastNumbers) {
+  using B = Ball<T>;
+  const int least = std::same_as<T, double_double> ? -1018 : -16390;
+  Draws<T> draws;
   for (int k = 0; k < 2000; ++k) {
     const auto exponent = [&] { return least + 41 + static_cast<int>(draws.bits() % 60); };
-    const M number = draws.number();
+    const T number = draws.number();
     const int e = exponent();
     const B x(scaled(number, e), 0), y(scaled(draws.number(), exponent()), 0), quotient = x / y;
     if (is_finite(quotient)) expect_holds(quotient, Rational(exact(x.middle()) / exact(y.middle())));
@@ -112,9 +104,9 @@ TYPED_TEST(Balls, HoldQuotientsAndSumsOfTheLeastNumbers) {
   EXPECT_EQ(order(B(0), B(0)), Order::open);
 }
 
-TYPED_TEST(Balls, HoldRoots) {
-  using B = Ball<typename TypeParam::Scalar>;
-  Draws<typename TypeParam::Scalar> draws;
+PRECISION_TEST(Balls, HoldRoots) {
+  using B = Ball<T>;
+  Draws<T> draws;
   for (int k = 0; k < 3000; ++k) {
     const B x = draws.ball();
     const B root = sqrt(x);
@@ -131,13 +123,12 @@ TYPED_TEST(Balls, HoldRoots) {
   }
 }
 
-TYPED_TEST(Balls, CombinationsHoldAndDoNotGrow) {
-  using M = typename TypeParam::Scalar;
-  using B = Ball<M>;
-  Draws<M> draws;
+PRECISION_TEST(Balls, CombinationsHoldAndDoNotGrow) {
+  using B = Ball<T>;
+  Draws<T> draws;
   for (int k = 0; k < 500; ++k) {
     const B x = draws.ball(), y = draws.ball();
-    const B c(M(draws.uniform()), static_cast<typename B::Radius>(k % 2 == 0 ? 0 : 0x1p-70));
+    const B c(T(draws.uniform()), static_cast<typename B::Radius>(k % 2 == 0 ? 0 : 0x1p-70));
     const typename B::Share share(c);
     const auto [l, r] = B::combined(x, y, x - y, share, k % 4 < 2 ? share : typename B::Share(c));
     for (const Rational& a : draws.numbers(x))
@@ -155,9 +146,9 @@ TYPED_TEST(Balls, CombinationsHoldAndDoNotGrow) {
 }
 
 // x - c(x - y) (x - y) with c(w) = w/8 and a derivative w/4 of c(w) w.
-TYPED_TEST(Balls, SharesThatDependOnADifferenceEnclose) {
-  using B = Ball<typename TypeParam::Scalar>;
-  Draws<typename TypeParam::Scalar> draws;
+PRECISION_TEST(Balls, SharesThatDependOnADifferenceEnclose) {
+  using B = Ball<T>;
+  Draws<T> draws;
   const B eighth = B(1) / B(8);
   for (int k = 0; k < 500; ++k) {
     const B x = draws.ball(), y = draws.ball(), apart = x - y;
@@ -171,15 +162,14 @@ TYPED_TEST(Balls, SharesThatDependOnADifferenceEnclose) {
   }
 }
 
-TYPED_TEST(Balls, ComparisonsAreCertainOrOpen) {
-  using M = typename TypeParam::Scalar;
-  using B = Ball<M>;
-  Draws<M> draws;
+PRECISION_TEST(Balls, ComparisonsAreCertainOrOpen) {
+  using B = Ball<T>;
+  Draws<T> draws;
   std::array<int, 3> counted{};
   for (int k = 0; k < 5000; ++k) {
     const B x = draws.ball();
     // Near it, so that all cases occur.
-    const B y(x.middle() + M(to_double(x.middle()) * (draws.uniform() - 0.5) * std::ldexp(1., -(k % 60) * 2)),
+    const B y(x.middle() + T(to_double(x.middle()) * (draws.uniform() - 0.5) * std::ldexp(1., -(k % 60) * 2)),
               x.radius());
     const bool less = exact(x.middle()) + exact(x.radius()) < exact(y.middle()) - exact(y.radius());
     const bool greater = exact(x.middle()) - exact(x.radius()) > exact(y.middle()) + exact(y.radius());
@@ -193,9 +183,9 @@ TYPED_TEST(Balls, ComparisonsAreCertainOrOpen) {
   for (const int count : counted) EXPECT_GT(count, 300);
 }
 
-TYPED_TEST(Balls, DecimalsAndDoublesAreRoundedOutwards) {
-  using B = Ball<typename TypeParam::Scalar>;
-  Draws<typename TypeParam::Scalar> draws;
+PRECISION_TEST(Balls, DecimalsAndDoublesAreRoundedOutwards) {
+  using B = Ball<T>;
+  Draws<T> draws;
   for (int k = 0; k < 500; ++k) {
     const B x = draws.ball();
     const auto text = in_decimals(x);
@@ -214,10 +204,9 @@ TYPED_TEST(Balls, DecimalsAndDoublesAreRoundedOutwards) {
 }
 
 // A particle at rest has the velocity 0, exactly: to find doubles on either side of it must not take for ever.
-TYPED_TEST(Balls, DoublesAreFoundAroundZero) {
-  using M = typename TypeParam::Scalar;
-  using B = Ball<M>;
-  for (const B& x : {B(0), B(M(0), 5e-324), B(M(0), 1e-300), B(M(0), 1e-30)}) {
+PRECISION_TEST(Balls, DoublesAreFoundAroundZero) {
+  using B = Ball<T>;
+  for (const B& x : {B(0), B(T(0), 5e-324), B(T(0), 1e-300), B(T(0), 1e-30)}) {
     const auto doubles = in_doubles(x);
     EXPECT_LT(doubles.low, 0);
     EXPECT_GT(doubles.high, 0);
@@ -226,8 +215,8 @@ TYPED_TEST(Balls, DoublesAreFoundAroundZero) {
   }
 }
 
-TYPED_TEST(Balls, LiteralsAreEnclosed) {
-  using B = Ball<typename TypeParam::Scalar>;
+PRECISION_TEST(Balls, LiteralsAreEnclosed) {
+  using B = Ball<T>;
   for (const auto& [text, numerator, denominator] :
        {std::tuple{"0.999", 999, 1000}, {"1e-5", 1, 100000}, {"0.3333333", 3333333, 10000000}, {"-7", -7, 1}}) {
     const B x = from_text<B>(text);
@@ -236,12 +225,11 @@ TYPED_TEST(Balls, LiteralsAreEnclosed) {
   }
 }
 
-TYPED_TEST(Balls, WhatMayBeZeroDividesNothing) {
-  using M = typename TypeParam::Scalar;
-  using B = Ball<M>;
-  EXPECT_FALSE(is_finite(B(1) / B(M(1), 2)));
+PRECISION_TEST(Balls, WhatMayBeZeroDividesNothing) {
+  using B = Ball<T>;
+  EXPECT_FALSE(is_finite(B(1) / B(T(1), 2)));
   EXPECT_EQ(order(B(1) / B(0), B(5)), Order::open);
-  EXPECT_FALSE(is_positive(B(M(1), 1)));
+  EXPECT_FALSE(is_positive(B(T(1), 1)));
 }
 
 // The next decimals outside, by a type that holds the ends exactly. Ends that would be rounded to the power of ten

@@ -2,10 +2,6 @@
 // Proves: proved collisions are those of the exact gas, bounds contain the exact numbers, accounts of walls included,
 // for every state in the balls of the start; a run is never proved if one of its collisions is dropped, exchanged with
 // a neighbour's, invented or made on the wrong side of the cut-off.
-#include <string>
-
-#include <gtest/gtest.h>
-
 #include "cradle/tests/precision/drawn_scenes.hpp"
 
 namespace cradle::test::certify_drawn_test {

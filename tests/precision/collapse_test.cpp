@@ -6,12 +6,7 @@
 // six particles, with walls and unequal masses, are in every type reported to collapse only if they do so with 60
 // digits, down to gaps of 1e-3000; the stated error of t_c bounds the true error in each case, and is at most a hundred
 // times as large in half of them.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
 #include <iostream>
-#include <optional>
 #include <random>
 
 #include "cradle/core/initial/walled.hpp"
@@ -20,8 +15,7 @@
 
 namespace cradle::test::collapse_test {
 
-template <class P> using CollapseSizes = InPrecision<P>;
-TYPED_TEST_SUITE(CollapseSizes, WidePrecision, PrecisionName);
+PRECISION_SUITE(CollapseSizes, WidePrecision);
 
 // Collapse sets in at t = N_c/(2 u0), N_c = 2/(1 - (4/pi) atan sqrt eps) particles being engaged.
 double onset(double restitution) { return 2 / (1 - 4 / M_PI * std::atan(std::sqrt(restitution))); }
@@ -70,7 +64,7 @@ template <class T> int expect_ends_of_all_sizes() {
   return open;
 }
 
-TYPED_TEST(CollapseSizes, RunsEndByThemselves) { EXPECT_EQ(expect_ends_of_all_sizes<typename TypeParam::Scalar>(), 0); }
+PRECISION_TEST(CollapseSizes, RunsEndByThemselves) { EXPECT_EQ(expect_ends_of_all_sizes<T>(), 0); }
 
 TEST(CollapseSizesInDouble, RunsEndByThemselves) {
   EXPECT_LE(expect_ends_of_all_sizes<double>(), 4) << "of the two rows, whose last collisions are slow";
@@ -109,8 +103,7 @@ template <class T> Scene<T> checkerboard() {
 
 // With eps = 0.15 a = (1 + eps) cos(pi/4), and an antisymmetric error grows by eps/lam-^2 a cycle. From one rounding it
 // takes ln(1/v)/ln(eps/lam-^2) cycles to become as large as the gaps.
-TYPED_TEST(CollapseSizes, FourParticlesKeepTheirSymmetry) {
-  using T = typename TypeParam::Scalar;
+PRECISION_TEST(CollapseSizes, FourParticlesKeepTheirSymmetry) {
   const double eps = 0.15, a = (1 + eps) / std::sqrt(2.), slow = (a - std::sqrt(a * a - 4 * eps)) / 2;
   const double growth = eps / (slow * slow), room = -std::log(to_double(std::numeric_limits<T>::epsilon()));
   const int predicted = static_cast<int>(room / std::log(growth));

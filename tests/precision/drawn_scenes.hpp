@@ -2,20 +2,7 @@
 // what the exact gas and the engine make of them.
 #pragma once
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <concepts>
-#include <cstdint>
-#include <map>
-#include <memory>
-#include <numeric>
-#include <optional>
 #include <ostream>
-#include <string>
-#include <type_traits>
-#include <utility>
-#include <vector>
 
 #include <gtest/gtest.h>
 

@@ -3,19 +3,12 @@
 // collisions made are the inversions of x_i + v_i t. Proves: counts and velocities are exact (velocities of these
 // fixtures are sums of exact numbers), positions right to rounding; lattices, and all particles at one point. (In
 // rational arithmetic: exact_gas_test.cpp.)
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <utility>
-#include <vector>
-
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/precision/every_scalar.hpp"
 
 namespace cradle::test::elastic_test {
 
-template <class P> using Elastic = InPrecision<P>;
-TYPED_TEST_SUITE(Elastic, EveryPrecision, PrecisionName);
+PRECISION_SUITE(Elastic, EveryPrecision);
 
 // Places and velocities of tracers at a time, sorted by place. Those at the same place have just met: the slower one is
 // on the left from here on.
@@ -56,8 +49,7 @@ void expect_free_flight(Run run, const Particles<T>& particles, const std::vecto
   EXPECT_EQ(run.account().simultaneous, 0U) << "gaps between those that close are open";
 }
 
-TYPED_TEST(Elastic, MixedVelocitiesSortThemselves) {
-  using T = typename TypeParam::Scalar;
+PRECISION_TEST(Elastic, MixedVelocitiesSortThemselves) {
   const auto particles = rmix<T>(200);
   const Inelastic<T> law(T(1));
   expect_free_flight(gap_run(particles, law), *particles, {1, 5, 20, 100, 1000, 1e5});
@@ -65,8 +57,7 @@ TYPED_TEST(Elastic, MixedVelocitiesSortThemselves) {
   expect_free_flight(position_run(particles, law), *particles, {1, 5, 20, 100, 1000});
 }
 
-TYPED_TEST(Elastic, PerturbedRowsPassThroughEachOther) {
-  using T = typename TypeParam::Scalar;
+PRECISION_TEST(Elastic, PerturbedRowsPassThroughEachOther) {
   const auto particles = rshock<T>(300);
   const Inelastic<T> law(T(1));
   expect_free_flight(gap_run(particles, law), *particles, {.5, 1, 7.25, 50, 140, 300});
@@ -74,8 +65,7 @@ TYPED_TEST(Elastic, PerturbedRowsPassThroughEachOther) {
 }
 
 // The same counts with a restitution next to 1, which loses (1 - eps)(1 + eps) w^2/4 a collision, w < 2.
-TYPED_TEST(Elastic, ARestitutionNextToOneMakesTheSameCollisions) {
-  using T = typename TypeParam::Scalar;
+PRECISION_TEST(Elastic, ARestitutionNextToOneMakesTheSameCollisions) {
   constexpr double u = 0x1p-53;
   const auto particles = rmix<T>(200);
   auto run = gap_run(particles, Inelastic<T>(T(1. - u)));
@@ -104,8 +94,7 @@ template <class Run> void expect_sorted(Run run, int n) {
     ASSERT_TRUE(c.v[j] == T(b + 1 - n) && c.x[j] == c.v[j]) << b;
   }
 }
-TYPED_TEST(Elastic, AllParticlesMeetAtOnePoint) {
-  using T = typename TypeParam::Scalar;
+PRECISION_TEST(Elastic, AllParticlesMeetAtOnePoint) {
   for (const int n : {3, 4, 10, 61}) {
     std::vector<T> x, v;
     for (int i = 0; i < n; ++i) x.push_back(T(i)), v.push_back(T(-i));
@@ -115,8 +104,7 @@ TYPED_TEST(Elastic, AllParticlesMeetAtOnePoint) {
 }
 
 // Rows on a lattice: at every multiple of l/(2 u0) one more layer meets, and the collisions are triangular numbers.
-TYPED_TEST(Elastic, LatticesMeetInLayers) {
-  using T = typename TypeParam::Scalar;
+PRECISION_TEST(Elastic, LatticesMeetInLayers) {
   const Scene<T> lattice = lattice_rows<T>(60);
   const Inelastic<T> law(T(1));
   std::vector<double> times{100};  // when every particle of one row has met every one of the other

@@ -9,8 +9,7 @@
 
 namespace cradle::test::elementary_test {
 
-template <class P> using Elementary = InPrecision<P>;
-TYPED_TEST_SUITE(Elementary, EveryPrecision, PrecisionName);
+PRECISION_SUITE(Elementary, EveryPrecision);
 
 template <class T> T epsilon() { return T(std::numeric_limits<T>::epsilon()); }
 template <class T> void expect_close(const T& a, const T& b, double units, const char* what, double at) {
@@ -21,8 +20,7 @@ template <class T> void expect_close(const T& a, const T& b, double units, const
 
 // Identities need no other library: E(a + b) = E(a) + E(b) - E(a) E(b), by terms that are all positive once written as
 // E(a) (1 - E(b)) + E(b).
-TYPED_TEST(Elementary, RiseObeysItsAdditionTheorem) {
-  using T = typename TypeParam::Scalar;
+PRECISION_TEST(Elementary, RiseObeysItsAdditionTheorem) {
   const ExponentialRise<T> rise;
   T a = T(1) / T(1 << 30);
   for (int k = 0; k < 70; ++k, a *= T(3) / T(2)) {
@@ -36,16 +34,14 @@ TYPED_TEST(Elementary, RiseObeysItsAdditionTheorem) {
 }
 
 // 1 - exp(-y) = y - y^2/2 + ..., at y = 2^-(p/2 + 8) to all digits of a type with p.
-TYPED_TEST(Elementary, RiseIsItsArgumentWhereThatIsSmall) {
-  using T = typename TypeParam::Scalar;
+PRECISION_TEST(Elementary, RiseIsItsArgumentWhereThatIsSmall) {
   const ExponentialRise<T> rise;
   T y(1);
   while (y * y > epsilon<T>() / T(1 << 16)) y /= T(2);
   expect_close<T>(rise(y), T(y - y * y / T(2)), 4, "rise", to_double(y));
 }
 
-TYPED_TEST(Elementary, PowersMultiplyAndInvert) {
-  using T = typename TypeParam::Scalar;
+PRECISION_TEST(Elementary, PowersMultiplyAndInvert) {
   const Power<T> half(T(T(1) / T(2))), square(T(2)), odd(T(T(5) / T(2))), seventh(T(T(1) / T(7))),
       third(T(T(7) / T(2)));
   for (const int numerator : {1, 3, 17, 255, 4096, 1000003}) {
@@ -71,8 +67,7 @@ template <class T> double off(const T& x, const Reference& exact) {
   return static_cast<double>(abs((reference(x) - exact) / (exact * reference(epsilon<T>()))));
 }
 
-TYPED_TEST(Elementary, IsMpfrsToTheDigitsOfTheType) {
-  using T = typename TypeParam::Scalar;
+PRECISION_TEST(Elementary, IsMpfrsToTheDigitsOfTheType) {
   const ExponentialRise<T> rise;
   const T s = T(27) / T(10);
   const Power<T> power(s);
@@ -88,8 +83,7 @@ TYPED_TEST(Elementary, IsMpfrsToTheDigitsOfTheType) {
 }
 #endif
 
-TYPED_TEST(Elementary, LawKeepsTheDigitsOfItsLoss) {
-  using T = typename TypeParam::Scalar;
+PRECISION_TEST(Elementary, LawKeepsTheDigitsOfItsLoss) {
   const T eps = T(1) / T(4), delta = T(1) / T(8), mass(3), light(1);
   const SpeedDependent<T> law(eps, delta, T(3));
   const ExponentialRise<T> rise;
@@ -107,8 +101,7 @@ TYPED_TEST(Elementary, LawKeepsTheDigitsOfItsLoss) {
 }
 
 // Very fast and very slow collisions, 2^9 and 2^-64 times the cut-off, are those of the plain law above and below it.
-TYPED_TEST(Elementary, LawHasThePlainOneAsItsLimits) {
-  using T = typename TypeParam::Scalar;
+PRECISION_TEST(Elementary, LawHasThePlainOneAsItsLimits) {
   const T mass(1), half = mass / T(2), delta = T(1) / T(8);
   for (const T& eps : {T(T(1) / T(4)), T(T(7) / T(8)), T(0), T(1)}) {
     const Inelastic<T> plain(eps, delta);

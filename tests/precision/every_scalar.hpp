@@ -8,11 +8,6 @@
 #include <boost/multiprecision/mpfr.hpp>
 #endif
 
-#include <concepts>
-#include <limits>
-#include <string>
-#include <vector>
-
 #include "cradle/core/engine/simulation.hpp"
 #include "cradle/precision/scalars.hpp"
 
@@ -147,5 +142,14 @@ template <class P> class InPrecision : public testing::Test {
 #endif
   }
 };
+
+// A suite in each of these precisions, and a case of it, in which T is the scalar.
+#define PRECISION_SUITE(suite, precisions)                                                                             \
+  template <class P> using suite = InPrecision<P>;                                                                     \
+  TYPED_TEST_SUITE(suite, precisions, PrecisionName)
+#define PRECISION_TEST(suite, name)                                                                                    \
+  template <class TypeParam, class T> void suite##name();                                                              \
+  TYPED_TEST(suite, name) { suite##name<TypeParam, typename TypeParam::Scalar>(); }                                    \
+  template <class TypeParam, class T> void suite##name()
 
 }  // namespace cradle::test

@@ -4,12 +4,6 @@
 // fronts are those of the gas, nothing is missing where gaps are added up, and no order is lost: exactly in rationals,
 // ties included; with laws and falls that take roots to 1e-80 in 100 digits. In double and in long double the engine
 // makes the same collisions, and its errors are those that the gas itself has in these types, up to a factor of 3.
-#include <algorithm>
-#include <utility>
-#include <vector>
-
-#include <gtest/gtest.h>
-
 #include "cradle/core/chains/position_chain.hpp"
 #include "cradle/core/engine/sticky_gas.hpp"
 #include "cradle/core/observe/configuration_statistics.hpp"

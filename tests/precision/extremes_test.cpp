@@ -3,12 +3,6 @@
 // times, a run ends as it should, without a hang and without a lost order; the velocity cut-off takes effect exactly
 // below its value; a light particle between a wall that takes energy and a heavy particle, elastic at low speeds, comes
 // to an end in every type, also in types with unlimited exponents.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <utility>
-
 #include "cradle/core/initial/walled.hpp"
 #include "cradle/tests/core/compare.hpp"
 #include "cradle/tests/core/fixtures.hpp"
@@ -60,8 +54,7 @@ TEST(Extremes, MassesOfOneToATrillion) {
   }
 }
 
-template <class P> using EveryExtreme = InPrecision<P>;
-TYPED_TEST_SUITE(EveryExtreme, EveryPrecision, PrecisionName);
+PRECISION_SUITE(EveryExtreme, EveryPrecision);
 
 template <class T> Scene<T> three(int third_place) {
   return list<T>({T(0), T(1), T(third_place)}, {T(1), T(0), T(-1)});
@@ -69,8 +62,7 @@ template <class T> Scene<T> three(int third_place) {
 
 // Next to 0, far below epsilon, the second collision finds a gap that no time resolves, at 0 none: with a cut-off the
 // particles part, without one the run reports that it is exhausted.
-TYPED_TEST(EveryExtreme, RestitutionNextToZero) {
-  using T = typename TypeParam::Scalar;
+PRECISION_TEST(EveryExtreme, RestitutionNextToZero) {
   for (const T& restitution : {T(0), from_text<T>(TypeParam::digits > 0 ? "1e-100000000" : "1e-300")}) {
     auto parting = gap_run(three<T>(3), Inelastic<T>(restitution, from_text<T>("1e-5")));
     // Double-double ends at 2^-969: there a gap of 1e-300 ends the run, and the status reports it.
@@ -88,8 +80,7 @@ TYPED_TEST(EveryExtreme, RestitutionNextToZero) {
 }
 
 // Three particles meet at one place at t = 1. By the tie rule the left gap goes first.
-TYPED_TEST(EveryExtreme, ThreeParticlesMeet) {
-  using T = typename TypeParam::Scalar;
+PRECISION_TEST(EveryExtreme, ThreeParticlesMeet) {
   auto run = gap_run(three<T>(2), Inelastic<T>(T(1), T(0)));
   std::vector<ParticleIndex> order;
   ASSERT_EQ(run.advance(T(2), [&](const Collision<T>& c) { order.push_back(c.left); }), Status::reached);
@@ -102,8 +93,7 @@ TYPED_TEST(EveryExtreme, ThreeParticlesMeet) {
 }
 
 // The law is elastic for closing speeds below the cut-off, inelastic at it.
-TYPED_TEST(EveryExtreme, CutoffFromBothSides) {
-  using T = typename TypeParam::Scalar;
+PRECISION_TEST(EveryExtreme, CutoffFromBothSides) {
   const T cutoff = from_text<T>("1e-5"), step = cutoff * std::numeric_limits<T>::epsilon() * T(2);
   for (const char* restitution : {".3", ".9"}) {
     const T eps = from_text<T>(restitution);
@@ -124,11 +114,9 @@ TYPED_TEST(EveryExtreme, CutoffFromBothSides) {
   }
 }
 
-template <class P> using SlowStandstill = InPrecision<P>;
-TYPED_TEST_SUITE(SlowStandstill, WidePrecision, PrecisionName);
+PRECISION_SUITE(SlowStandstill, WidePrecision);
 
-TYPED_TEST(SlowStandstill, EndsARunThatNoLongerAdvances) {
-  using T = typename TypeParam::Scalar;
+PRECISION_TEST(SlowStandstill, EndsARunThatNoLongerAdvances) {
   Wall<T> wall{T(0)};
   wall.restitution = T(1) / T(2);
   const Scene<T> pair = list<T>({T(1), T(2)}, {T(0), T(-1)}, {T(1), T(1000)});

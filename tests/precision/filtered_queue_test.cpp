@@ -3,10 +3,6 @@
 // time to the last bit: in collapses, in shocks, in crowds and lattices, where many collisions are simultaneous, and
 // under the wet law, where particles pass, merge and stream in. The number of index bits in a key changes no bit of a
 // run. (A loop without a queue, from the start: random_scenes_test.cpp.)
-#include <gtest/gtest.h>
-
-#include <cstdint>
-
 #include "cradle/core/chains/cluster_chain.hpp"
 #include "cradle/tests/core/compare.hpp"
 #include "cradle/tests/core/fixtures.hpp"
@@ -15,9 +11,8 @@
 
 namespace cradle::test::filtered_queue_test {
 
-template <class P> using FilteredQueue = InPrecision<P>;
 using InDoubleToo = Joined<testing::Types<Precision<double>>, WidePrecision>::Types;  // where keys are exact times
-TYPED_TEST_SUITE(FilteredQueue, InDoubleToo, PrecisionName);
+PRECISION_SUITE(FilteredQueue, InDoubleToo);
 
 template <class Chain, class Law, class T>
 Simulation<T, Law, Chain> make(const Scene<T>& particles, const Law& law, int queue_bits = 3) {
@@ -38,8 +33,7 @@ std::uint64_t expect_index_bits_change_no_bit(const Scene<T>& particles, const L
   return run20.counts().close_calls;
 }
 
-TYPED_TEST(FilteredQueue, BouncingParticles) {
-  using T = typename TypeParam::Scalar;
+PRECISION_TEST(FilteredQueue, BouncingParticles) {
   const T zero(0), most = T(15) / T(16), cutoff = from_text<T>("1e-3");
   const struct {
     const char* name;
@@ -65,16 +59,14 @@ TYPED_TEST(FilteredQueue, BouncingParticles) {
 }
 
 // From exactly simultaneous collisions to what a key resolves.
-TYPED_TEST(FilteredQueue, CrowdsWithAnyWidthOfTheIndex) {
-  using T = typename TypeParam::Scalar;
+PRECISION_TEST(FilteredQueue, CrowdsWithAnyWidthOfTheIndex) {
   for (const int bits : {3, 16, 18})
     for (const char* restitution : {"1", "0.999999999999"})
       expect_each_the_first(make<GapChain<T>>(crowds<T>(300, 5), Inelastic<T>(from_text<T>(restitution)), bits), T(10),
                             901);
 }
 
-TYPED_TEST(FilteredQueue, WetParticles) {
-  using T = typename TypeParam::Scalar;
+PRECISION_TEST(FilteredQueue, WetParticles) {
   const struct {
     Scene<T> particles;
     const char* loss;
@@ -91,8 +83,7 @@ TYPED_TEST(FilteredQueue, WetParticles) {
   }
 }
 
-TYPED_TEST(FilteredQueue, Collapses) {
-  using T = typename TypeParam::Scalar;
+PRECISION_TEST(FilteredQueue, Collapses) {
   const auto expect_many = [](const Scene<T>& particles, const char* restitution, int end, const char* gap) {
     expect_each_the_first(
         gap_run(particles, Inelastic<T>(from_text<T>(restitution), T(0)), stop_below(from_text<T>(gap))), T(end), 100);
@@ -102,8 +93,7 @@ TYPED_TEST(FilteredQueue, Collapses) {
   expect_many(rshock<T>(12), ".4", 100, "1e-200");
 }
 
-TYPED_TEST(FilteredQueue, IndexBitsChangeNoBit) {
-  using T = typename TypeParam::Scalar;
+PRECISION_TEST(FilteredQueue, IndexBitsChangeNoBit) {
   using Chain = GapChain<T>;
   const T zero(0), most = T(15) / T(16);
   const Inelastic<T> law(from_text<T>(".9"), from_text<T>("1e-3"));

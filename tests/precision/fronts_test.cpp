@@ -21,8 +21,6 @@
 // t.
 #ifdef CRADLE_WITH_MPFR
 
-#include <gtest/gtest.h>
-
 #include "cradle/core/chains/cluster_chain.hpp"
 #include "cradle/core/theory/inelastic_shock.hpp"
 #include "cradle/core/theory/wet_shock.hpp"
@@ -31,8 +29,7 @@
 
 namespace cradle::test::fronts_test {
 
-template <class P> using Fronts = InPrecision<P>;
-TYPED_TEST_SUITE(Fronts, EveryPrecision, PrecisionName);
+PRECISION_SUITE(Fronts, EveryPrecision);
 
 template <class T> auto tracer(const T& restitution) {
   return theory::FrontRecursion<Reference>(theory::InelasticShock<Reference>{reference(restitution)});
@@ -63,16 +60,14 @@ void expect_fronts(Run run, Recursion front, std::uint64_t turnover, std::uint64
   EXPECT_EQ(run.account().simultaneous, 0U) << "triple collisions, decided by the tie rule";
 }
 
-TYPED_TEST(Fronts, OfInelasticRowsFollowTheRecursion) {
-  using T = typename TypeParam::Scalar;
+PRECISION_TEST(Fronts, OfInelasticRowsFollowTheRecursion) {
   const T restitution = from_text<T>("0.99");
   const Inelastic<T> law(restitution);
   expect_fronts(gap_run(lattice_rows<T>(500), law), tracer(restitution), 139, 3);
   expect_fronts(position_run(lattice_rows<T>(500), law), tracer(restitution), 139, 6);
 }
 
-TYPED_TEST(Fronts, OfWetRowsFollowTheRecursion) {
-  using T = typename TypeParam::Scalar;
+PRECISION_TEST(Fronts, OfWetRowsFollowTheRecursion) {
   for (const auto& [divisor, turnover] : {std::pair(100, 38), std::pair(20, 8)}) {
     const T loss = T(1) / T(divisor);
     expect_fronts(Simulation(Wet<T>(loss), ClusterChain<T>(lattice_rows<T>(4 * turnover), T(0))), wet_tracer(loss),

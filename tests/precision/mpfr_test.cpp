@@ -3,15 +3,7 @@
 // numbers of their own, however they are moved about in memory; zeros and signs are right; saved numbers come back.
 #ifdef CRADLE_WITH_MPFR
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
 #include <random>
-#include <stdexcept>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "cradle/core/base/state.hpp"
 #include "cradle/tests/precision/every_scalar.hpp"
@@ -56,8 +48,7 @@ using Sizes =
     Joined<EveryMpfr, testing::Types<Precision<Mpfr<4>, 76>, Precision<Mpfr<8>, 50>, Precision<Mpfr<8>, 100>>>::Types;
 TYPED_TEST_SUITE(MpfrInPlace, Sizes);  // by number: two have 50 digits
 
-TYPED_TEST(MpfrInPlace, OperationsHaveTheBitsOfTheLibrary) {
-  using T = typename TypeParam::Scalar;
+PRECISION_TEST(MpfrInPlace, OperationsHaveTheBitsOfTheLibrary) {
   RandomNumbers<T> random(1);
   Plain expected;
   for (int k = 0; k < 5000; ++k) {
@@ -84,8 +75,7 @@ TYPED_TEST(MpfrInPlace, OperationsHaveTheBitsOfTheLibrary) {
   }
 }
 
-TYPED_TEST(MpfrInPlace, OperandAndResultMayBeOneObject) {
-  using T = typename TypeParam::Scalar;
+PRECISION_TEST(MpfrInPlace, OperandAndResultMayBeOneObject) {
   RandomNumbers<T> random(2);
   for (int k = 0; k < 500; ++k) {
     const T x = random();
@@ -100,8 +90,7 @@ TYPED_TEST(MpfrInPlace, OperandAndResultMayBeOneObject) {
 }
 
 // A conversion rounds to nearest, the reading of the limbs cuts off at 2^-53 of 1: one unit apart at most.
-TYPED_TEST(MpfrInPlace, LeadingDigitsAreThoseOfTheLibrary) {
-  using T = typename TypeParam::Scalar;
+PRECISION_TEST(MpfrInPlace, LeadingDigitsAreThoseOfTheLibrary) {
   RandomNumbers<T> random(3);
   for (int k = 0; k < 5000; ++k) {
     const T x = k == 0 ? T(1) : k == 1 ? T(T(1) - std::numeric_limits<T>::epsilon() / T(2)) : random();
@@ -121,8 +110,7 @@ TYPED_TEST(MpfrInPlace, LeadingDigitsAreThoseOfTheLibrary) {
   EXPECT_EQ(split(T(-T(0)), exponent), 0);
 }
 
-TYPED_TEST(MpfrInPlace, CopiesAreNumbersOfTheirOwn) {
-  using T = typename TypeParam::Scalar;
+PRECISION_TEST(MpfrInPlace, CopiesAreNumbersOfTheirOwn) {
   RandomNumbers<T> random(4);
   const T x = random(), y = random();
   T copy = x, assigned;
@@ -144,8 +132,7 @@ TYPED_TEST(MpfrInPlace, CopiesAreNumbersOfTheirOwn) {
   EXPECT_TRUE(others[x > T(0) ? 7 : 192] == T(7) * x);
 }
 
-TYPED_TEST(MpfrInPlace, ZerosAndIntegers) {
-  using T = typename TypeParam::Scalar;
+PRECISION_TEST(MpfrInPlace, ZerosAndIntegers) {
   const T zero(0), minus_zero = -zero;
   EXPECT_TRUE(zero == T(0) && minus_zero == zero);
   EXPECT_FALSE(is_negative(minus_zero) || is_positive(minus_zero) || is_negative(zero) || is_positive(zero));
@@ -160,8 +147,7 @@ TYPED_TEST(MpfrInPlace, ZerosAndIntegers) {
   EXPECT_EQ(static_cast<double>(T(-0.1)), -0.1);
 }
 
-TYPED_TEST(MpfrInPlace, SavedNumbersComeBackAndKindsThatThereAreNotAreRefused) {
-  using T = typename TypeParam::Scalar;
+PRECISION_TEST(MpfrInPlace, SavedNumbersComeBackAndKindsThatThereAreNotAreRefused) {
   const T infinite = std::numeric_limits<T>::infinity(), none = std::numeric_limits<T>::quiet_NaN();
   T loaded;
   for (const T& x : {T(0), T(-T(0)), T(3), T(-0.1), infinite, T(-infinite), none}) {

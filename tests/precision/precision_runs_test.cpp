@@ -19,8 +19,6 @@
 // difference and of the quotient g_0/z is off by 12 v (t_c - t_0) at most.
 #ifdef CRADLE_WITH_MPFR
 
-#include <gtest/gtest.h>
-
 #include "cradle/tests/core/compare.hpp"
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/core/slow_loop.hpp"
@@ -28,10 +26,8 @@
 
 namespace cradle::test::precision_runs_test {
 
-template <class P> using EveryScalarRun = InPrecision<P>;
-TYPED_TEST_SUITE(EveryScalarRun, EveryPrecision, PrecisionName);
-template <class P> using SlowScalarRun = InPrecision<P>;
-TYPED_TEST_SUITE(SlowScalarRun, EachKindOfPrecision, PrecisionName);
+PRECISION_SUITE(EveryScalarRun, EveryPrecision);
+PRECISION_SUITE(SlowScalarRun, EachKindOfPrecision);
 
 struct Count {
   int time;
@@ -55,16 +51,14 @@ std::uint64_t collisions_in_double(int time) {
   return run.counts().collisions;
 }
 
-TYPED_TEST(EveryScalarRun, ShockOfThePapersFigure2) {
-  using T = typename TypeParam::Scalar;
+PRECISION_TEST(EveryScalarRun, ShockOfThePapersFigure2) {
   if (TypeParam::digits == 1000)
     expect_collisions<T>({{300, collisions_in_double(300)}});
   else
     expect_collisions<T>({{1999, 1299216}});
 }
 
-TYPED_TEST(SlowScalarRun, ShockOfThePapersFigure2) {
-  using T = typename TypeParam::Scalar;
+PRECISION_TEST(SlowScalarRun, ShockOfThePapersFigure2) {
   if (std::same_as<T, double> || std::same_as<T, long double> || std::same_as<T, double_double>)
     expect_collisions<T>({{4000, 4685816}, {6000, 16156905}});
   else
@@ -100,8 +94,7 @@ template <class T, class Run> void expect_collapse_time(Run run, const Collapse&
 }
 
 // Heavy outer particles collapse at larger restitution: q < 1/2 in all of these.
-TYPED_TEST(EveryScalarRun, TimeIsSettledToFullPrecision) {
-  using T = typename TypeParam::Scalar;
+PRECISION_TEST(EveryScalarRun, TimeIsSettledToFullPrecision) {
   const struct {
     const char* restitution;
     std::vector<double> masses;
@@ -182,8 +175,7 @@ void expect_followed_down_to(const char* least, double restitution, const std::v
   EXPECT_EQ(run.chain().account().order_lost, 0U);
 }
 
-TYPED_TEST(EveryScalarRun, GapsAreFollowedToTheEndOfTheRange) {
-  using T = typename TypeParam::Scalar;
+PRECISION_TEST(EveryScalarRun, GapsAreFollowedToTheEndOfTheRange) {
   for (const ThreeCollapse& row : three_collapses)
     expect_followed_down_to<GapChain<T>>("1e-290", row.restitution(), {1, 1, 1});
   expect_followed_down_to<GapChain<T, IndividualMasses<T>>>("1e-290", 0.1, {3, 1, 2});
@@ -208,9 +200,8 @@ TEST(CollapseInDouble, TheGapPassesEveryDecadeAtTheRightCollision) {
 // the last place of 1e12, 2^-14 in double, to 53 bits: 2^-68 a move, 3.4e-21. The scenes here move it some tens of
 // times: below 1e-18 even if all roundings had the same sign, and that much more exact in wider types.
 
-template <class P> using LateStart = InPrecision<P>;
 using Precisions = testing::Types<Precision<double>, Precision<double_double>, Precision<Mpfr<4>, 30>>;
-TYPED_TEST_SUITE(LateStart, Precisions, PrecisionName);
+PRECISION_SUITE(LateStart, Precisions);
 
 template <class T> struct Seen {
   ParticleIndex left;
@@ -253,8 +244,7 @@ void expect_same_run(const Scene<T>& particles, const Inelastic<T>& law, int end
   EXPECT_TRUE(early_run.energy_lost() == late_run.energy_lost());
 }
 
-TYPED_TEST(LateStart, MakesTheSameCollisions) {
-  using T = typename TypeParam::Scalar;
+PRECISION_TEST(LateStart, MakesTheSameCollisions) {
   expect_same_run(rmix<T>(32), Inelastic<T>(T(15) / T(16), T(0)), 1000);
   expect_same_run(rshock<T>(200), Inelastic<T>(from_text<T>(".9"), from_text<T>("1e-3")), 58);
   // Gaps fall to 1e-30 while time advances at 1e12.

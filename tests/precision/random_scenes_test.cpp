@@ -2,11 +2,6 @@
 // silent, energy is never gained), a loop without a queue makes the same collisions, a run saved at random moments and
 // loaded again continues with the same bits, and so does one that is inspected in between.
 // RC_PARAMS="max_success=10000" makes it more; CTest sets the seed.
-#include <memory>
-#include <numeric>
-#include <vector>
-
-#include <gtest/gtest.h>
 #include <rapidcheck.h>
 
 #include "cradle/core/base/state.hpp"
@@ -110,36 +105,25 @@ template <class T> Inelastic<T> inelastic(const Drawn& d, const T& below) {
 }
 template <class T> Inelastic<T> with_cutoff(const Drawn& d) { return inelastic<T>(d, cutoff<T>(d)); }
 
-template <class P> class RandomScenes : public InPrecision<P> {};
-TYPED_TEST_SUITE(RandomScenes, EachKindOfPrecision, PrecisionName);
+PRECISION_SUITE(RandomScenes, EachKindOfPrecision);
 
-TYPED_TEST(RandomScenes, InelasticInGaps) {
-  using T = typename TypeParam::Scalar;
-  check_drawn_scenes<GapChain<T, IndividualMasses<T>>>(with_cutoff<T>);
-}
-TYPED_TEST(RandomScenes, InelasticInPositions) {
-  using T = typename TypeParam::Scalar;
-  check_drawn_scenes<PositionChain<T>>(with_cutoff<T>, false);
-}
-TYPED_TEST(RandomScenes, WithAContactTime) {
-  using T = typename TypeParam::Scalar;
+PRECISION_TEST(RandomScenes, InelasticInGaps) { check_drawn_scenes<GapChain<T, IndividualMasses<T>>>(with_cutoff<T>); }
+PRECISION_TEST(RandomScenes, InelasticInPositions) { check_drawn_scenes<PositionChain<T>>(with_cutoff<T>, false); }
+PRECISION_TEST(RandomScenes, WithAContactTime) {
   check_drawn_scenes<GapChain<T, IndividualMasses<T>>>(
       [](const Drawn& d) { return ContactTime<T>(inelastic<T>(d, T(0)), time_of<T>(d.scene.cutoff)); });
 }
-TYPED_TEST(RandomScenes, Wet) {
-  using T = typename TypeParam::Scalar;
+PRECISION_TEST(RandomScenes, Wet) {
   check_drawn_scenes<ClusterChain<T>>([](const Drawn& d) { return cradle::Wet<T>(T(d.scene.loss) / T(64)); });
 }
-TYPED_TEST(RandomScenes, Merging) {
-  using T = typename TypeParam::Scalar;
+PRECISION_TEST(RandomScenes, Merging) {
   check_drawn_scenes<ClusterChain<T>>(
       [](const Drawn& d) { return InelasticMerging<T>(inelastic<T>(d, T(0)), cutoff<T>(d)); });
 }
 
 // Found here: three particles collapse down to gaps of 1e-1080, and the times of other collisions, in such units, are
 // beyond the range of the queue's keys. They were taken for never.
-TYPED_TEST(RandomScenes, ACollapseBeyondTheRangeOfDoubleForgetsNoOtherCollision) {
-  using T = typename TypeParam::Scalar;
+PRECISION_TEST(RandomScenes, ACollapseBeyondTheRangeOfDoubleForgetsNoOtherCollision) {
   Drawn d{{{1, 1, 17, 1, 1, 1}, {-16384, -14252, -16384, -16384, -15276, -15679}, {64, 7790, 64, 7568, 64, 64}},
           9,
           {0, 0, 64}};

@@ -32,11 +32,9 @@ template <class T> std::vector<std::shared_ptr<const Particles<T>>> states() {
           cold(-0.5)};
 }
 
-template <class P> class RandomStates : public InPrecision<P> {};
-TYPED_TEST_SUITE(RandomStates, EveryPrecision, PrecisionName);
+PRECISION_SUITE(RandomStates, EveryPrecision);
 
-TYPED_TEST(RandomStates, AreThoseOfDoubleUpToRounding) {
-  using T = typename TypeParam::Scalar;
+PRECISION_TEST(RandomStates, AreThoseOfDoubleUpToRounding) {
   const auto exact = states<T>();
   const auto rounded = states<double>();
   for (std::size_t k = 0; k < exact.size(); ++k) {

@@ -6,14 +6,7 @@
 // other, until it falls faster than what is free.
 #pragma once
 
-#include <algorithm>
-#include <array>
-#include <cstdint>
 #include <functional>
-#include <limits>
-#include <optional>
-#include <utility>
-#include <vector>
 
 #include "cradle/core/initial/particles.hpp"
 #include "cradle/precision/bin_float.hpp"

@@ -4,12 +4,6 @@
 // its exponents; infinity and NaN, if they are claimed, exist and behave as such; and for any numeric_limits a run
 // refuses to advance to an infinite time or to NaN, and can then continue. (In double-double a run to an infinite time
 // used to make no collisions, without a message; in double NaN overwrote memory.)
-#include <cmath>
-#include <concepts>
-#include <stdexcept>
-
-#include <gtest/gtest.h>
-
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/precision/every_scalar.hpp"
 #include "cradle/tests/texts.hpp"
@@ -74,8 +68,7 @@ TEST(ScalarNames, MpfrIsNotInThisBuild) { EXPECT_TRUE(has(refusal("mpfr", 50), "
 
 // ---- limits
 
-template <class P> using EveryLimit = InPrecision<P>;
-TYPED_TEST_SUITE(EveryLimit, EveryPrecision, PrecisionName);
+PRECISION_SUITE(EveryLimit, EveryPrecision);
 
 // 2^exponent, by squaring: exponents go to 2^30.
 template <class T> T power_of_two(long exponent) {
@@ -87,8 +80,7 @@ template <class T> T power_of_two(long exponent) {
   return power;
 }
 
-TYPED_TEST(EveryLimit, EpsilonIsWhatTheDigitsSay) {
-  using T = typename TypeParam::Scalar;
+PRECISION_TEST(EveryLimit, EpsilonIsWhatTheDigitsSay) {
   using Limits = std::numeric_limits<T>;
   const T epsilon = Limits::epsilon();
   EXPECT_TRUE(T(1) + epsilon > T(1) && T(1) - epsilon < T(1));
@@ -103,8 +95,7 @@ TYPED_TEST(EveryLimit, EpsilonIsWhatTheDigitsSay) {
   }
 }
 
-TYPED_TEST(EveryLimit, LeastAndGreatestAreWhatTheExponentsSay) {
-  using T = typename TypeParam::Scalar;
+PRECISION_TEST(EveryLimit, LeastAndGreatestAreWhatTheExponentsSay) {
   using Limits = std::numeric_limits<T>;
   EXPECT_TRUE(Limits::lowest() == -Limits::max());
   const long above = std::same_as<T, bin_float> ? 1 : 0;  // Boost 1.74 counts exponents from 1 instead of from 1/2
@@ -115,8 +106,7 @@ TYPED_TEST(EveryLimit, LeastAndGreatestAreWhatTheExponentsSay) {
   EXPECT_TRUE(share < T(1) && share >= T(1) - (std::same_as<T, double_double> ? T(0x1p-53) : Limits::epsilon()));
 }
 
-TYPED_TEST(EveryLimit, InfinityIsBeyondEveryNumber) {
-  using T = typename TypeParam::Scalar;
+PRECISION_TEST(EveryLimit, InfinityIsBeyondEveryNumber) {
   using Limits = std::numeric_limits<T>;
   ASSERT_TRUE(Limits::has_infinity);
   const T infinity = Limits::infinity();
@@ -129,8 +119,7 @@ TYPED_TEST(EveryLimit, InfinityIsBeyondEveryNumber) {
   EXPECT_EQ(to_double(infinity), std::numeric_limits<double>::infinity());
 }
 
-TYPED_TEST(EveryLimit, NanIsUnlikeEveryNumberAndItself) {
-  using T = typename TypeParam::Scalar;
+PRECISION_TEST(EveryLimit, NanIsUnlikeEveryNumberAndItself) {
   using Limits = std::numeric_limits<T>;
   ASSERT_TRUE(Limits::has_quiet_NaN);
   const T nan = Limits::quiet_NaN();
@@ -140,8 +129,7 @@ TYPED_TEST(EveryLimit, NanIsUnlikeEveryNumberAndItself) {
   EXPECT_TRUE(std::isnan(to_double(nan)) && std::isnan(to_double(T(nan + T(1)))));
 }
 
-TYPED_TEST(EveryLimit, OnlyNumbersAreTimes) {
-  using T = typename TypeParam::Scalar;
+PRECISION_TEST(EveryLimit, OnlyNumbersAreTimes) {
   const T infinite = T(1) / T(0), undefined = T(0) / T(0), tiny = std::numeric_limits<T>::min();
   EXPECT_TRUE(is_finite(T(0)) && is_finite(T(-7)) && is_finite(tiny) && is_finite(far_away<T>()));
   auto run = gap_run<T>(list<T>({T(0), T(1), T(3)}, {T(1), T(0), T(-1)}), Inelastic<T>(T(1)));

@@ -1,10 +1,5 @@
 // Shaken walls in every scalar type: pi, sine and cosine; whole numbers of any size; the search for a collision ends; a
 // column, in all types the same collisions. When gaps to them close: wall_gaps_test.cpp.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <optional>
-
 #include "cradle/core/initial/walled.hpp"
 #include "cradle/core/observe/configuration_statistics.hpp"
 #include "cradle/core/observe/sample.hpp"
@@ -14,12 +9,10 @@
 
 namespace cradle::test::shaken_walls_in_types_test {
 
-template <class P> class ShakenIn : public InPrecision<P> {};
-TYPED_TEST_SUITE(ShakenIn, EveryPrecision, PrecisionName);
+PRECISION_SUITE(ShakenIn, EveryPrecision);
 
 // sin^2 + cos^2 = 1, sin(4 y) from sin(y), and the values at quarters and twelfths of a turn: to 8 epsilon.
-TYPED_TEST(ShakenIn, SineAndCosineHaveTheirDigits) {
-  using T = typename TypeParam::Scalar;
+PRECISION_TEST(ShakenIn, SineAndCosineHaveTheirDigits) {
   const T epsilon = std::numeric_limits<T>::epsilon(), most = T(8) * epsilon;
   const Circle<T> circle;
   for (int k = -40; k < 40; ++k) {
@@ -39,8 +32,7 @@ TYPED_TEST(ShakenIn, SineAndCosineHaveTheirDigits) {
 }
 
 // Whole numbers of turns of any size, as long as the type has digits behind the point.
-TYPED_TEST(ShakenIn, WholeNumbersOfAnySizeAreExact) {
-  using T = typename TypeParam::Scalar;
+PRECISION_TEST(ShakenIn, WholeNumbersOfAnySizeAreExact) {
   const T epsilon = std::numeric_limits<T>::epsilon();
   T whole(1);
   for (int k = 0; k < 1000 && whole * epsilon < T(1) / T(16); ++k, whole += whole + T(k % 2))
@@ -51,8 +43,7 @@ TYPED_TEST(ShakenIn, WholeNumbersOfAnySizeAreExact) {
 }
 
 // The phases that follow a time are those of the later times, to the bit, after few and after very many turns.
-TYPED_TEST(ShakenIn, PhasesThatFollowATimeAreThoseOfLaterTimes) {
-  using T = typename TypeParam::Scalar;
+PRECISION_TEST(ShakenIn, PhasesThatFollowATimeAreThoseOfLaterTimes) {
   constexpr int motions = std::same_as<T, double> ? 3000 : std::floating_point<T> ? 30 : 2;  // no shorter way in others
   std::uint64_t state = 11;
   const auto draw = [&] { return static_cast<double>((state = splitmix64(state)) >> 11) * 0x1p-53; };
@@ -68,13 +59,11 @@ TYPED_TEST(ShakenIn, PhasesThatFollowATimeAreThoseOfLaterTimes) {
   }
 }
 
-template <class P> class ShakenColumnIn : public InPrecision<P> {};
-TYPED_TEST_SUITE(ShakenColumnIn, EachKindOfPrecision, PrecisionName);
+PRECISION_SUITE(ShakenColumnIn, EachKindOfPrecision);
 
 // A particle that approaches the place of the wall as slowly as the type can tell, or is pulled there as weakly,
 // collides about when it arrives there; the search ends at any time since the start and any size of the numbers.
-TYPED_TEST(ShakenColumnIn, TheSearchForACollisionEnds) {
-  using T = typename TypeParam::Scalar;
+PRECISION_TEST(ShakenColumnIn, TheSearchForACollisionEnds) {
   const T epsilon = std::numeric_limits<T>::epsilon();
   T root = T(3) / T(4);  // whose 20th power is epsilon, about
   while (std::pow(to_double(root), 20) > to_double(epsilon) && to_double(root) > 1e-15) root *= T(3) / T(4);
@@ -104,8 +93,7 @@ TYPED_TEST(ShakenColumnIn, TheSearchForACollisionEnds) {
 // All types make the same collisions of a column on a floor at rest and on one of each shape, of which particles may
 // come to rest on it, and keep the account of the energy to their digits. A collision or a flight rounds a few numbers
 // by u of the largest speed or height: on a floor at rest the energy is off by 64 epsilon of it for each at most.
-TYPED_TEST(ShakenIn, AColumnHasTheSameCollisions) {
-  using T = typename TypeParam::Scalar;
+PRECISION_TEST(ShakenIn, AColumnHasTheSameCollisions) {
   constexpr std::optional<Shape> floors[] = {{}, Shape::sawtooth, Shape::parabola, Shape::sine};
   for (const std::optional<Shape>& shape : floors)
     for (const bool rests : {false, true}) {

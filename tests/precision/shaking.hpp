@@ -2,10 +2,6 @@
 // How a wall is shaken about its place, towards the particles, by the formulas of core/laws/wall_motion.hpp: in numbers
 // of any type, at phases in turns.
 
-#include <cmath>
-#include <optional>
-#include <stdexcept>
-
 #include <boost/math/constants/constants.hpp>
 
 #include "cradle/core/laws/wall_motion.hpp"

@@ -3,12 +3,8 @@
 // double are kept if the type can hold them; anything but a finite decimal literal is refused.
 #ifdef CRADLE_WITH_MPFR
 
-#include <gtest/gtest.h>
-
 #include <boost/multiprecision/cpp_bin_float.hpp>
-#include <cmath>
 #include <random>
-#include <string>
 
 #include "cradle/tests/precision/every_scalar.hpp"
 #include "cradle/tests/texts.hpp"
@@ -17,8 +13,7 @@ namespace cradle::test::text_test {
 
 namespace bm = boost::multiprecision;
 
-template <class P> using EveryText = InPrecision<P>;
-TYPED_TEST_SUITE(EveryText, EveryPrecision, PrecisionName);
+PRECISION_SUITE(EveryText, EveryPrecision);
 
 template <class T> T power_of_ten(int exponent) {
   T power(1);
@@ -55,14 +50,12 @@ template <class T> void expect_nearest(const char* literal) {
   EXPECT_EQ(reference(from_text<T>(literal)), nearest<T>(Reference(literal))) << literal;
 }
 
-TYPED_TEST(EveryText, RandomNumbersComeBack) {
-  using T = typename TypeParam::Scalar;
+PRECISION_TEST(EveryText, RandomNumbersComeBack) {
   std::mt19937_64 random(20);
   for (int k = 0; k < (TypeParam::digits == 1000 ? 50 : 500); ++k) expect_round_trip(random_number<T>(random));
 }
 
-TYPED_TEST(EveryText, ExtremeNumbersComeBack) {
-  using T = typename TypeParam::Scalar;
+PRECISION_TEST(EveryText, ExtremeNumbersComeBack) {
   using Limits = std::numeric_limits<T>;
   for (const T& x : {Limits::min(), T(-Limits::min()), Limits::max(), Limits::lowest(), Limits::epsilon(),
                      T(T(1) + Limits::epsilon()), T(0), T(std::numeric_limits<std::int64_t>::max()),
@@ -70,8 +63,7 @@ TYPED_TEST(EveryText, ExtremeNumbersComeBack) {
     expect_round_trip(x);
 }
 
-TYPED_TEST(EveryText, LiteralsAreRoundedOnceToTheNearest) {
-  using T = typename TypeParam::Scalar;
+PRECISION_TEST(EveryText, LiteralsAreRoundedOnceToTheNearest) {
   for (const char* literal : {"0.999", "0.999000000000000000000000000000000000000000000000000000000000", "1e-5", "0.05",
                               "-.0625", "+3.", "12", "0.717967697244908258902146339765104971034890271643501598719573",
                               "1.E+2", "2.5e-30", "123456789012345678901e-7",
@@ -81,8 +73,7 @@ TYPED_TEST(EveryText, LiteralsAreRoundedOnceToTheNearest) {
     expect_nearest<T>(literal);
 }
 
-TYPED_TEST(EveryText, RandomLiteralsAreRoundedOnceToTheNearest) {
-  using T = typename TypeParam::Scalar;
+PRECISION_TEST(EveryText, RandomLiteralsAreRoundedOnceToTheNearest) {
   std::mt19937_64 random(21);
   for (int k = 0; k < 300; ++k) {
     std::string literal = std::to_string(random() % 10) + ".";
@@ -92,8 +83,7 @@ TYPED_TEST(EveryText, RandomLiteralsAreRoundedOnceToTheNearest) {
   }
 }
 
-TYPED_TEST(EveryText, ExponentsBeyondDoubleArriveWhereThereIsRoom) {
-  using T = typename TypeParam::Scalar;
+PRECISION_TEST(EveryText, ExponentsBeyondDoubleArriveWhereThereIsRoom) {
   if (std::same_as<T, double> || std::same_as<T, double_double>) {
     EXPECT_TRUE(from_text<T>("1e-400") == T(0));
     EXPECT_TRUE(from_text<T>("1e400") > std::numeric_limits<T>::max());
@@ -104,8 +94,7 @@ TYPED_TEST(EveryText, ExponentsBeyondDoubleArriveWhereThereIsRoom) {
 }
 
 // The size is in the digits and the exponent together.
-TYPED_TEST(EveryText, ManyZerosAndAnExponent) {
-  using T = typename TypeParam::Scalar;
+PRECISION_TEST(EveryText, ManyZerosAndAnExponent) {
   const std::string zeros(600, '0');
   expect_nearest<T>(("0." + zeros + "25e600").c_str());
   expect_nearest<T>(("7" + zeros + "e-600").c_str());
@@ -118,8 +107,7 @@ TYPED_TEST(EveryText, ManyZerosAndAnExponent) {
   }
 }
 
-TYPED_TEST(EveryText, WhatIsNoNumberHasTheSameNameInEveryType) {
-  using T = typename TypeParam::Scalar;
+PRECISION_TEST(EveryText, WhatIsNoNumberHasTheSameNameInEveryType) {
   using Limits = std::numeric_limits<T>;
   EXPECT_EQ(to_text(Limits::infinity()), "inf");
   EXPECT_EQ(to_text(T(-Limits::infinity())), "-inf");
@@ -127,8 +115,7 @@ TYPED_TEST(EveryText, WhatIsNoNumberHasTheSameNameInEveryType) {
   EXPECT_EQ(to_text(T(-Limits::quiet_NaN())), "nan");
 }
 
-TYPED_TEST(EveryText, RefusesWhatIsNotAFiniteDecimalLiteral) {
-  using T = typename TypeParam::Scalar;
+PRECISION_TEST(EveryText, RefusesWhatIsNotAFiniteDecimalLiteral) {
   for (const char* text :
        {"",  "nan", "NaN", "inf", "-inf", "infinity", " 1",  "1 ",   "1x",  "x",  "0x10", "1e",  "1e+", ".",  "-.",
         "+", "-",   "--1", "+-1", "1..2", "1.2.3",    "1,5", "1e5.", "1_0", "1f", "1L",   "1/3", "1\n", "e5", "@Inf@"})

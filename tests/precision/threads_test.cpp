@@ -8,8 +8,7 @@
 
 namespace cradle::test::precision_threads_test {
 
-template <class P> using WideThreads = InPrecision<P>;
-TYPED_TEST_SUITE(WideThreads, WidePrecision, PrecisionName);
+PRECISION_SUITE(WideThreads, WidePrecision);
 
 template <class T, class Masses> void expect_same_gaps(const Scene<T>& scene, const std::vector<T>& times) {
   SlabsMade all;
@@ -22,16 +21,14 @@ template <class T, class Masses> void expect_same_gaps(const Scene<T>& scene, co
   EXPECT_GT(all.again, 0U);
 }
 
-TYPED_TEST(WideThreads, SegmentsOfRowsThatAreStreamedOfGasesOnARingAndOnALine) {
-  using T = typename TypeParam::Scalar;
+PRECISION_TEST(WideThreads, SegmentsOfRowsThatAreStreamedOfGasesOnARingAndOnALine) {
   expect_same_gaps<T, IdenticalMasses<T>>(rshock<T>(1200), {T(500), T(520)});
   expect_same_gaps<T, IdenticalMasses<T>>(gas<T>(600, T(600)), {T(5), T(25)});
   expect_same_gaps<T, IndividualMasses<T>>(gas<T>(700, T(0), true), {T(10), T(80)});
 }
 
 // Wet and sticky: particles merge, and with them what their gaps have lost.
-TYPED_TEST(WideThreads, SegmentsOfParticlesThatMergeOnARing) {
-  using T = typename TypeParam::Scalar;
+PRECISION_TEST(WideThreads, SegmentsOfParticlesThatMergeOnARing) {
   const SegmentsAs as{{.gaps = 40, .ghosts = 8, .collisions = 4, .anywhere = true}, 2};
   const Scene<T> scene = gas<T>(600, T(600), true);
   SlabsMade made = expect_same_in_segments<ClusterChain<T>>(scene, Wet<T>(T(1) / T(50)), {as}, {T(5), T(40)});

@@ -2,21 +2,12 @@
 // bounces, gravity, shaken walls) make the collisions of 70 digits unless they warn that rounding may have decided one,
 // and state how far their energy is off; guards are silent on all of them, and find an error of 1e-6 planted into any;
 // closed forms (the digits of pi) are right up to a ratio of 1e12, or 1e14 in the slow test.
-#include <array>
-#include <cmath>
 #include <cstdio>
-#include <memory>
-#include <optional>
 #include <random>
-#include <type_traits>
-#include <vector>
-
-#include <gtest/gtest.h>
 
 #include "cradle/core/chains/cluster_chain.hpp"
 #include "cradle/core/chains/gap_chain.hpp"
 #include "cradle/core/chains/position_chain.hpp"
-#include "cradle/core/engine/simulation.hpp"
 #include "cradle/core/initial/list.hpp"
 #include "cradle/core/initial/walled.hpp"
 #include "cradle/core/observe/guards.hpp"

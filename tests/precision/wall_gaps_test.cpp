@@ -2,12 +2,6 @@
 // random gaps, against 100 digits. To shaken walls: random gaps, grazing ones among them, against formulas of their own
 // in 100 digits, close never later than they do, and at the speed that they have then. (A column:
 // shaken_walls_test.cpp.)
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <optional>
-#include <vector>
-
 #include "cradle/core/initial/walled.hpp"
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/precision/every_scalar.hpp"
@@ -31,13 +25,11 @@ template <class T> std::vector<T> bounces(const T& acceleration, const T& height
   return times;
 }
 
-template <class P> class FallIn : public InPrecision<P> {};
-TYPED_TEST_SUITE(FallIn, EveryPrecision, PrecisionName);
+PRECISION_SUITE(FallIn, EveryPrecision);
 
 // From the height k^2 with the acceleration 2 a ball is on the floor at the times k (2 n - 1). With k of less than half
 // the digits of the type every number on the way can be exact.
-TYPED_TEST(FallIn, ABallBouncesAThousandTimesToTheLastBit) {
-  using T = typename TypeParam::Scalar;
+PRECISION_TEST(FallIn, ABallBouncesAThousandTimesToTheLastBit) {
   const T epsilon = std::numeric_limits<T>::epsilon();
   T k(1);
   while (k * k * k * k * T(81) * T(1 << 24) * epsilon < T(1) && k < T(std::int64_t{1} << 60)) k *= T(3);

@@ -3,8 +3,6 @@
 // group of cases. `@name` stands for the lines of that name, which `@name =` begins and an empty line ends, or for the
 // bundled scene of that name. A line that ends in a backslash continues in the next one.
 
-#include <algorithm>
-#include <map>
 #include <sstream>
 
 #include "cradle/tests/tools/program.hpp"

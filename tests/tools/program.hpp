@@ -5,13 +5,10 @@
 #include <stdlib.h>
 #include <sys/wait.h>
 
-#include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <optional>
-#include <vector>
 
 #include "cradle/tests/places.hpp"
 #include "cradle/tests/texts.hpp"

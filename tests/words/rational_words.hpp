@@ -3,10 +3,6 @@
 // used. Velocities of particles instead of closing speeds, times forwards, eigenvectors as columns of adjugates at
 // isolated roots of characteristic polynomials, all in intervals with rational ends.
 
-#include <algorithm>
-#include <stdexcept>
-#include <vector>
-
 #include <boost/math/tools/polynomial.hpp>
 
 #include "cradle/core/words/word.hpp"

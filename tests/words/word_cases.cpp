@@ -2,13 +2,7 @@
 // written compactly (core/observe/collision_word.hpp), and how far it follows a word (core/words/followed.hpp). Twin:
 // the letters themselves, which must come back from the blocks; restrictions of a sequence to two touching letters,
 // which commuting leaves alone.
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <random>
-#include <set>
-#include <string>
-#include <vector>
 
 #include "cradle/core/observe/collision_word.hpp"
 #include "cradle/core/words/followed.hpp"

@@ -2,11 +2,7 @@
 // proofs must refuse. Also run with errors planted in core/words/, each of which a case here must find.
 #include <gtest/gtest.h>
 
-#include <cstdint>
 #include <random>
-#include <string>
-#include <tuple>
-#include <vector>
 
 #include "cradle/core/words/ranges.hpp"
 #include "cradle/precision/ball.hpp"

@@ -4,8 +4,6 @@
 // (States made of them, in every scalar type: precision/random_states_test.cpp.)
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
 #include <ranges>
 
 #include "cradle/core/base/counter_rng.hpp"

@@ -1,18 +1,10 @@
 // Well-formed states with numbers that no run has, as in a damaged file with a correct checksum: they are refused, or
 // the run ends. All were found by fuzzing (tests/fuzz/checkpoint.cpp): they wrote or read beyond a list, made
 // collisions without end, or overflowed an integer.
-#include <bit>
-#include <functional>
-#include <limits>
-#include <memory>
-
-#include <gtest/gtest.h>
-
 #include "cradle/core/chains/cluster_chain.hpp"
 #include "cradle/core/engine/sticky_gas.hpp"
 #include "cradle/tests/core/between_walls.hpp"
 #include "cradle/tests/core/compare.hpp"
-#include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/texts.hpp"
 
 namespace cradle::test::damaged_states_test {

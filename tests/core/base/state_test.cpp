@@ -1,9 +1,5 @@
 // The state of a run as a value: saved anywhere and loaded into a run of the same scene, it continues with the same
 // bits. Truncated or contradictory states are refused, before memory is allocated for them.
-#include <limits>
-
-#include <gtest/gtest.h>
-
 #include "cradle/core/chains/cluster_chain.hpp"
 #include "cradle/core/engine/sticky_gas.hpp"
 #include "cradle/core/parallel/segments.hpp"

@@ -5,8 +5,6 @@
 // a gap is below 2^-100 of the first. (Down to any requested gap: precision/precision_runs_test.cpp.)
 #include <gtest/gtest.h>
 
-#include <algorithm>
-
 #include "cradle/tests/core/fixtures.hpp"
 
 namespace cradle::test::collapse_policy_test {

@@ -6,10 +6,6 @@
 // collisions at one time since the start is bounded. The bound ends a collapse that tends to that time, but not one
 // that a cut-off ends below the clock's resolution. Particles of restitution 0 that meet at one time separate by a
 // cut-off, after as many collisions as in exact rationals.
-#include <gtest/gtest.h>
-
-#include <limits>
-
 #include "cradle/core/chains/cluster_chain.hpp"
 #include "cradle/core/theory/inelastic_collapse.hpp"
 #include "cradle/tests/core/between_walls.hpp"

@@ -6,8 +6,6 @@
 // run.
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "cradle/core/chains/cluster_chain.hpp"
 #include "cradle/core/engine/sticky_gas.hpp"
 #include "cradle/tests/core/between_walls.hpp"

@@ -1,10 +1,5 @@
 // Input that chains and initial states refuse, by exceptions that state what is wrong, what was found and what to do.
 // Proves: no chain silently accepts any of it.
-#include <gtest/gtest.h>
-
-#include <functional>
-#include <limits>
-
 #include "cradle/core/chains/cluster_chain.hpp"
 #include "cradle/core/engine/sticky_gas.hpp"
 #include "cradle/tests/core/fixtures.hpp"

@@ -10,10 +10,7 @@
 // exact system, as long as double represents the closing speeds; otherwise, if collisions are within rounding of each
 // other, no order is reported as lost. Local times that a late collision leaves ahead of the origin lose nothing when
 // it moves. Collisions that are later than rounding explains are still counted.
-#include <gtest/gtest.h>
-
 #include "cradle/core/chains/cluster_chain.hpp"
-#include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/core/rational.hpp"
 #include "cradle/tests/core/segmented.hpp"
 

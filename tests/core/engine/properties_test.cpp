@@ -9,9 +9,6 @@
 // one side: no velocity is off by more, and over a time t no place by more than t times that, and as much again for the
 // rounding of collision times. In absolute positions velocities are rounded themselves, of at most 1 instead of w. A
 // gap is 0 at its last collision: it knows the error of one flight only.
-#include <gtest/gtest.h>
-
-#include <cmath>
 #include <thread>
 
 #include "cradle/core/chains/cluster_chain.hpp"

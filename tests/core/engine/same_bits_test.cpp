@@ -5,10 +5,6 @@
 // saved anywhere and continued by another run; and if a run of other particles begins again with its own. And what
 // holds in each of them: the guards are silent (the ledger is the direct sum, momentum, order and closure are kept),
 // and no order is lost.
-#include <gtest/gtest.h>
-
-#include <vector>
-
 #include "cradle/core/chains/cluster_chain.hpp"
 #include "cradle/core/initial/poisson.hpp"
 #include "cradle/tests/core/between_walls.hpp"

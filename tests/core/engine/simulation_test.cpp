@@ -1,11 +1,6 @@
 // The event loop at its limits. Proves: a time that is not finite, or in the past, is refused before anything changes;
 // after exceptions from the caller's functions the run continues with the bits of an undisturbed one; times of
 // collisions are since the start, and steps stop at the time requested last.
-#include <gtest/gtest.h>
-
-#include <limits>
-#include <stdexcept>
-
 #include "cradle/tests/core/compare.hpp"
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/texts.hpp"

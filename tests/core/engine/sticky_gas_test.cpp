@@ -2,10 +2,6 @@
 // cooling. (In random scenes on lines and rings against an exact gas, in rationals and in double, ties and merges of
 // everything at one time among them: precision/exact_gas_test.cpp. The cluster between rows:
 // theory/sticky_shock_test.cpp.)
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "cradle/core/chains/cluster_chain.hpp"
 #include "cradle/core/engine/sticky_gas.hpp"
 #include "cradle/tests/core/compare.hpp"

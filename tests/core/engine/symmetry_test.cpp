@@ -4,10 +4,6 @@
 // positions; lengths, speeds and masses may be measured in other units (powers of two: exact). So nothing prefers a
 // direction or a scale, except the documented tie rule (the leftmost of simultaneous collisions first), which these
 // states do not use.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-
 #include "cradle/core/chains/cluster_chain.hpp"
 #include "cradle/tests/core/compare.hpp"
 #include "cradle/tests/core/fixtures.hpp"

@@ -1,17 +1,10 @@
 // Ensembles on either executor: the same bits for any number of threads; replicas that throw, that are cut short and
 // continued, that run ensembles of their own; and what is held in memory while they run.
-
 #include "cradle/core/ensemble/ensemble.hpp"
 
 #include <gtest/gtest.h>
 
-#include <atomic>
-#include <bit>
 #include <chrono>
-#include <stdexcept>
-#include <string>
-#include <thread>
-#include <vector>
 
 #include "cradle/tests/core/replicas.hpp"
 

@@ -1,21 +1,12 @@
 // Statistics over replicas: against exact arithmetic within a derived bound; the same bits in any order, split and
 // merged; entries that some replicas lack; counts in fixed bins and quantiles from them.
-
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <atomic>
-#include <bit>
-#include <cmath>
-#include <iterator>
-#include <limits>
-#include <numeric>
 #include <random>
 #include <set>
-#include <stdexcept>
 #include <thread>
 
-#include "cradle/core/base/counter_rng.hpp"
 #include "cradle/core/ensemble/statistics.hpp"
 #include "cradle/tests/core/rational.hpp"
 #include "cradle/tests/core/replicas.hpp"

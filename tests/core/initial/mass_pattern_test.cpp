@@ -2,8 +2,6 @@
 // are those particle by particle; a pattern of equal masses changes no bit; a ring has no momentum. (Energy and
 // momentum are kept, streamed is held and listed, at any cadence: engine/same_bits_test.cpp. Gaps against positions:
 // engine/properties_test.cpp. In segments: parallel/segments_test.cpp.)
-#include <gtest/gtest.h>
-
 #include "cradle/tests/core/compare.hpp"
 #include "cradle/tests/core/fixtures.hpp"
 

@@ -5,11 +5,6 @@
 // particles. (What is streamed is what is held: engine/same_bits_test.cpp.)
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <vector>
-
-#include "cradle/core/initial/gas.hpp"
 #include "cradle/core/initial/poisson.hpp"
 #include "cradle/tests/core/fixtures.hpp"
 

@@ -3,10 +3,6 @@
 // engine/misuse_test.cpp.)
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <optional>
-
 #include "cradle/core/initial/velocities.hpp"
 #include "cradle/tests/core/fixtures.hpp"
 

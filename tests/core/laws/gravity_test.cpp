@@ -2,13 +2,6 @@
 // fall, which are those without gravity to the last bit; frames and mirrors; the account of energy; a gas over a
 // thermal floor. (In gaps and positions against a gas in 100 digits: precision/exact_gas_test.cpp; what is refused:
 // walls_test.cpp.)
-
-#include <algorithm>
-#include <cmath>
-#include <utility>
-
-#include <gtest/gtest.h>
-
 #include "cradle/core/observe/batch_means.hpp"
 #include "cradle/core/observe/profile.hpp"
 #include "cradle/tests/core/between_walls.hpp"

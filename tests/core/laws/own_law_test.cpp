@@ -2,8 +2,6 @@
 // speed, eps = 1 - w/(2(w + w0)), 1 for slow collisions and 1/2 for fast ones. Proves: the engine needs to know nothing
 // else of a law; outcomes are those computed by hand, the ledger is the direct sum, momentum is kept, and gaps and
 // positions make the same collisions at every particle.
-#include <gtest/gtest.h>
-
 #include "cradle/core/observe/configuration_statistics.hpp"
 #include "cradle/tests/core/compare.hpp"
 #include "cradle/tests/core/fixtures.hpp"

@@ -1,11 +1,6 @@
 // Piles: particles that come to rest on one another on a floor. When they do, against sums of geometric series; a pile
 // that is let go; laws with a cut-off or a contact time. (Motions and accounts against a gas in 100 digits:
 // precision/exact_gas_test.cpp; what is refused: walls_test.cpp.)
-
-#include <cmath>
-#include <numbers>
-#include <vector>
-
 #include <gtest/gtest.h>
 
 #include "cradle/tests/core/between_walls.hpp"

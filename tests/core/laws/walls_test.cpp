@@ -3,10 +3,6 @@
 // exact arithmetic or 100 digits: precision/exact_gas_test.cpp; in double: engine/same_bits_test.cpp; in segments:
 // parallel/segments_test.cpp. Thermal equilibrium and mirrors: gravity_test.cpp. When what rests is let go:
 // resting_test.cpp.)
-
-#include <cmath>
-#include <numbers>
-
 #include <gtest/gtest.h>
 
 #include "cradle/core/chains/cluster_chain.hpp"

@@ -1,10 +1,6 @@
 // The wet law: its threshold, Newton's cradle, and the shock of an independent event-driven N-particle program at the
 // paper's size, to its end. (Others are among the fixtures of engine/fixtures_test.cpp.)
-
 #include <gtest/gtest.h>
-
-#include <array>
-#include <cmath>
 
 #include "cradle/core/chains/cluster_chain.hpp"
 #include "cradle/core/observe/scenario.hpp"

@@ -2,10 +2,6 @@
 // a cold stream do not cancel; batches shorter than what is correlated show.
 #include "cradle/core/observe/averages.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "cradle/tests/core/compare.hpp"
 #include "cradle/tests/core/fixtures.hpp"
 

@@ -2,8 +2,6 @@
 // interaction zone, and what becomes of the two heaviest.
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "cradle/core/chains/cluster_chain.hpp"
 #include "cradle/core/observe/scenario.hpp"
 #include "cradle/core/observe/zone.hpp"

@@ -3,8 +3,6 @@
 // with masses; particles that no front has reached count, and fall; all from a saved state too.
 #include "cradle/core/observe/correlations.hpp"
 
-#include <gtest/gtest.h>
-
 #include "cradle/tests/core/between_walls.hpp"
 #include "cradle/tests/core/compare.hpp"
 

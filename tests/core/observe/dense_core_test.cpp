@@ -2,8 +2,6 @@
 // ones.
 #include "cradle/core/observe/dense_core.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <random>
 
 #include <gtest/gtest.h>

@@ -2,10 +2,6 @@
 // own quantity that is far too small to be seen in a result.
 #include <gtest/gtest.h>
 
-#include <functional>
-#include <limits>
-#include <optional>
-
 #include "cradle/core/engine/sticky_gas.hpp"
 #include "cradle/tests/core/between_walls.hpp"
 

@@ -2,10 +2,6 @@
 // the plain loop, in segments, streamed, and from a saved state; clusters counted by hand.
 #include "cradle/core/observe/histograms.hpp"
 
-#include <gtest/gtest.h>
-
-#include <map>
-
 #include "cradle/tests/core/between_walls.hpp"
 #include "cradle/tests/core/segmented.hpp"
 

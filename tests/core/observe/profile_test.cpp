@@ -3,10 +3,6 @@
 // to all digits, also where it is small against the velocity squared.
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <numeric>
-
-#include "cradle/core/observe/configuration_statistics.hpp"
 #include "cradle/core/observe/profile.hpp"
 #include "cradle/core/observe/zone.hpp"
 #include "cradle/tests/core/between_walls.hpp"

@@ -3,8 +3,6 @@
 // batch means, from a saved state too.
 #include "cradle/core/observe/structure.hpp"
 
-#include <gtest/gtest.h>
-
 #include <complex>
 #include <random>
 

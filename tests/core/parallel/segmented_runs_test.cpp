@@ -1,8 +1,6 @@
 // Runs that use segments for parts of the time. Proves: a run has the bits of the plain loop for anything that comes
 // between its time slabs: plain advances, observers, single steps, interrupts, exceptions of the caller and of the
 // threads; and it does not use segments if they are not faster. Every build runs part of this under ThreadSanitizer.
-#include <gtest/gtest.h>
-
 #include "cradle/tests/core/between_walls.hpp"
 #include "cradle/tests/core/segmented.hpp"
 

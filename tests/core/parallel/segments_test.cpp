@@ -2,8 +2,6 @@
 // every time at which it stops, and an observer receives the same collisions in the same order; with laws, masses,
 // lines, rows and rings, gravity and shaken walls, simultaneous collisions, collapsed cores and time slabs that fail at
 // every cut.
-#include <gtest/gtest.h>
-
 #include "cradle/tests/core/between_walls.hpp"
 #include "cradle/tests/core/segmented.hpp"
 

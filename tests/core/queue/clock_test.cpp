@@ -1,9 +1,6 @@
 // Time as origin and offset. Proves: moving the origin any number of times changes nothing. (That a run which starts at
 // 1e12, where a double resolves only 1e-4, has bit for bit the gaps and closing speeds of a run that starts at 0, and
 // collision times that differ by 1e12, in a collapse too, is in tests/precision/precision_runs_test.cpp.)
-#include <gtest/gtest.h>
-
-#include <cmath>
 #include <random>
 
 #include "cradle/core/queue/clock.hpp"

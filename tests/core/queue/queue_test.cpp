@@ -7,7 +7,6 @@
 #include <random>
 #include <set>
 #include <utility>
-#include <vector>
 
 #include "cradle/core/queue/event_queue.hpp"
 

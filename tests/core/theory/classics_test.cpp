@@ -5,11 +5,6 @@
 #include <boost/numeric/odeint.hpp>
 #include <gtest/gtest.h>
 
-#include <array>
-#include <cmath>
-#include <numbers>
-
-#include "cradle/core/initial/cold.hpp"
 #include "cradle/core/theory/inelastic_collapse.hpp"
 #include "cradle/tests/core/fixtures.hpp"
 

@@ -3,8 +3,6 @@
 // bench/results/paper.md.
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "cradle/core/chains/cluster_chain.hpp"
 #include "cradle/core/engine/sticky_gas.hpp"
 #include "cradle/core/theory/free_cooling.hpp"

@@ -1,10 +1,6 @@
 // Theory of the sticky shock. Proves: its closed forms fulfil the balances they come from and the paper's weak solution
 // (Fig. 1); rows of particles follow them as closely as particles can; a symmetric shock to the particle; the free
 // cooling constants.
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "cradle/core/engine/sticky_gas.hpp"
 #include "cradle/core/theory/free_cooling.hpp"
 #include "cradle/core/theory/inelastic_shock.hpp"

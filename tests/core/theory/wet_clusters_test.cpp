@@ -9,10 +9,6 @@
 #include <boost/numeric/odeint.hpp>
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <limits>
 #include <utility>
 
 #include "cradle/core/theory/wet_zone.hpp"

@@ -5,12 +5,8 @@
 // it leaves out.
 #include "cradle/core/theory/wet_energy.hpp"
 
-#include <gtest/gtest.h>
-
 #include <map>
-#include <optional>
 #include <utility>
-#include <vector>
 
 #include "cradle/tests/core/rational.hpp"
 #include "cradle/tests/core/wet_reference.hpp"

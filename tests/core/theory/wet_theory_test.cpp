@@ -4,11 +4,6 @@
 // down to the smallest losses and up to the threshold.
 #include "cradle/core/theory/wet_shock.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <string>
-
 #include "cradle/core/theory/wet_energy.hpp"
 #include "cradle/core/theory/wet_zone.hpp"
 #include "cradle/tests/core/wet_reference.hpp"

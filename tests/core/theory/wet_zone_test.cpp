@@ -4,11 +4,6 @@
 // form, to full precision where the printed differences cancel.
 #include "cradle/core/theory/wet_zone.hpp"
 
-#include <gtest/gtest.h>
-
-#include <stdexcept>
-#include <string>
-
 #include "cradle/tests/core/wet_reference.hpp"
 
 namespace cradle::test::wet_zone_test {

@@ -1,8 +1,5 @@
 // The numbers in files of ensembles: statistics compared with those of single runs, how replicas ended, replicas that
 // collapse. (Those that fail, what every replica records: tests/tools/outputs.txt.)
-
-#include <algorithm>
-#include <cmath>
 #include <numeric>
 
 #include "cradle/tests/tools/ensemble/ensembles.hpp"

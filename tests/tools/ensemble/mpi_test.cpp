@@ -1,9 +1,5 @@
 // Ensembles across the ranks of an MPI job: the same bytes as one process, for any number of ranks and threads, after a
 // rank was killed and the launcher ended the job, and after a signal.
-
-#include <algorithm>
-#include <regex>
-
 #include "cradle/tests/tools/ensemble/ensembles.hpp"
 
 namespace cradle::tests::mpi_test {

@@ -2,8 +2,6 @@
 // that are refused: tests/tools/messages.txt.)
 #include "cradle/tools/ensemble/study.hpp"
 
-#include <cmath>
-
 #include "cradle/tests/tools/program.hpp"
 
 namespace cradle::tests::sweep_test {

@@ -1,10 +1,5 @@
 // A proof and its run that do not agree: an error planted in any quantity that the run reports, in every precision,
 // ends the program with the name of the quantity, and never gives a certificate.
-#include <algorithm>
-#include <functional>
-#include <memory>
-#include <utility>
-
 #include "cradle/tests/tools/program.hpp"
 #include "cradle/tools/proof/certify.hpp"
 #include "cradle/tools/setup/read_scene.hpp"

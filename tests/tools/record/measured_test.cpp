@@ -3,9 +3,6 @@
 // that balance; nearly the same numbers in every scalar type. (The same bytes on any number of threads, in segments and
 // out of them: tools/run/outputs.txt; in ensembles: tools/ensemble. Checkpoints: tools/store/resume_test. Scenes that
 // are refused: tools/messages.txt.)
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <numbers>
 
 #include "cradle/tests/tools/program.hpp"

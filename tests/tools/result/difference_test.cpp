@@ -1,10 +1,6 @@
 // `cradle diff`. Proves: two results are the same only if everything in them is; each kind of difference is reported
 // where it is, with its size; and a tolerance accepts smaller differences and counts them. (What the command prints,
 // and its statuses, are in tests/tools/run/outputs.txt.)
-#include <cmath>
-#include <functional>
-#include <limits>
-
 #include "cradle/tests/tools/program.hpp"
 #include "cradle/tools/result/difference.hpp"
 

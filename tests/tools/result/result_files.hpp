@@ -3,8 +3,6 @@
 
 #include <hdf5.h>
 
-#include <functional>
-
 #include "cradle/tests/tools/program.hpp"
 #include "cradle/tools/result/csv.hpp"
 #include "cradle/tools/result/seal.hpp"

@@ -1,10 +1,6 @@
 // Scenes of two clusters, equation (16), as a user runs them: the layout of a result, both scenarios of Fig. 9, Fig. 10
 // with the exponents of (17), and the wet rule where they meet. (The force, the same bytes:
 // tests/tools/run/outputs.txt.)
-#include <algorithm>
-#include <array>
-#include <cmath>
-
 #include "cradle/core/theory/wet_zone.hpp"
 #include "cradle/tests/tools/program.hpp"
 
@@ -18,14 +14,10 @@ class RunClusters : public ProgramTest {
   }
 };
 
-std::vector<std::uint64_t> counts(const tools::Result& result, std::string_view group, std::string_view name) {
-  return numbers<std::uint64_t>(result, group, name);
-}
-
 // The paths of the first and of the second cluster, from the columns left and right.
 std::array<std::vector<double>, 2> by_cluster(const tools::Result& result, const std::string& name) {
   const auto& values = numbers(result, "series/heaviest", name);
-  const auto& index = counts(result, "series/heaviest", "index");
+  const auto& index = numbers<std::uint64_t>(result, "series/heaviest", "index");
   std::array<std::vector<double>, 2> paths;
   for (std::size_t k = 0; k < values.size(); ++k) paths.at(index[k]).push_back(values[k]);
   return paths;
@@ -123,7 +115,7 @@ TEST_F(RunClusters, Fig9HasBothScenarios) {
   EXPECT_GT(*std::max_element(paths[0].begin(), paths[0].end()), 1) << "the left one comes to the right";
 
   const auto sticking = result_of("fig9b");
-  ASSERT_EQ(counts(sticking, "meetings", "stuck"), std::vector<std::uint64_t>{1});
+  ASSERT_EQ(numbers<std::uint64_t>(sticking, "meetings", "stuck"), std::vector<std::uint64_t>{1});
   EXPECT_EQ(numbers(sticking, "meetings", "time")[0], numbers(passing, "meetings", "time")[0]);
   EXPECT_LT(numbers(sticking, "meetings", "relative_energy")[0], 0.05) << "the wet rule, not a choice";
   const auto& mass = numbers(sticking, "series/heaviest", "mass");
@@ -131,7 +123,7 @@ TEST_F(RunClusters, Fig9HasBothScenarios) {
   EXPECT_NEAR(mass[mass.size() - 2], 2 + 5000, 1e-11) << "everything that has come in";
   EXPECT_TRUE(std::isnan(mass.back())) << "there is no second one any more";
   EXPECT_EQ(x[x.size() - 2], 0);
-  EXPECT_EQ(counts(sticking, "series", "merges").back(), 1U);
+  EXPECT_EQ(numbers<std::uint64_t>(sticking, "series", "merges").back(), 1U);
   EXPECT_EQ(numbers(sticking, "series", "energy").back(), 0);
   // what both had is what was lost
   EXPECT_EQ(numbers(sticking, "series", "energy_lost").back(), numbers(sticking, "meetings", "relative_energy")[0]);
@@ -142,7 +134,7 @@ TEST_F(RunClusters, WetRuleTakesItsLossFromFastClusters) {
   const auto result = result_of(
       "fig9b --set initial.x=[-30,30] --set run.start=1000 --set run.until=20000 --set output.series.points=2000");
   const auto& energy = numbers(result, "meetings", "relative_energy");
-  const auto& stuck = counts(result, "meetings", "stuck");
+  const auto& stuck = numbers<std::uint64_t>(result, "meetings", "stuck");
   ASSERT_GE(energy.size(), 2U);
   std::uint64_t passed = 0;
   for (std::size_t k = 0; k < energy.size(); ++k) {

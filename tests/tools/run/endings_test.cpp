@@ -3,8 +3,6 @@
 //
 // Random scenes with floors, shaken walls, rows, lists and rings, with every collapse policy: CRADLE_ENDINGS=500 makes
 // it more.
-
-#include <cmath>
 #include <cstdio>
 #include <random>
 

@@ -1,8 +1,5 @@
 // The decimals below /exact, for each type wider than double: they have all digits of the numbers whose doubles are in
 // the tables, and these numbers are known to the digits of the type.
-#include <cmath>
-#include <map>
-
 #include "cradle/precision/text.hpp"
 #include "cradle/tests/core/rational.hpp"
 #include "cradle/tests/tools/program.hpp"

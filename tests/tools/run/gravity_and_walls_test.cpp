@@ -1,7 +1,5 @@
 // Gravity and shaken walls in scenes: the account of energy in a result, with balls that rest on a floor. (The same
 // bits on any number of threads, free fall: tests/tools/run/outputs.txt. Bad input: tests/tools/messages.txt.)
-#include <cmath>
-
 #include "cradle/tests/tools/program.hpp"
 
 namespace cradle::tests::gravity_and_walls_test {

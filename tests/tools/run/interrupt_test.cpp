@@ -6,9 +6,7 @@
 #include <signal.h>
 
 #include <csignal>
-#include <initializer_list>
 #include <thread>
-#include <utility>
 
 #include "cradle/tests/tools/program.hpp"
 #include "cradle/tools/run/run.hpp"

@@ -1,11 +1,11 @@
 // The program from scene to file: the Fig. 2 shock from a list of particles against counts of an independent
-// event-driven N-particle program (identical in double, binary128 and 100 digits). (The three-particle collapse against
-// its closed form, and that two runs give the same bytes: tests/tools/run/outputs.txt.)
-
-#include <cmath>
-
+// event-driven N-particle program (identical in double, binary128 and 100 digits). How often a run is sampled changes
+// only the series: every other number in a result file, attributes included, has the same bits. This includes lattices,
+// with very many simultaneous collisions, for which the order of events is hardest to keep. (The three-particle
+// collapse against its closed form, and that two runs give the same bytes: tests/tools/run/outputs.txt.)
 #include "cradle/tests/core/fixtures.hpp"
-#include "cradle/tests/tools/program.hpp"
+#include "cradle/tests/tools/cases.hpp"
+#include "cradle/tools/result/difference.hpp"
 #include "cradle/tools/run/run_guards.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
 
@@ -96,5 +96,35 @@ TEST_F(Run, EnergyAtACollapseHasDigits) {
   EXPECT_LT(std::abs(tools::attribute<double>(result.attributes, "ledger_error", "")), 1e-15);
   EXPECT_EQ(tools::attribute<double>(result.find("snapshots/0000")->attributes, "gap_min", ""), 0);
 }
+
+class Cadence : public testing::TestWithParam<ListedCase> {
+ protected:
+  static tools::RunOutcome run(const std::string& points) {
+    return tools::run_scene(
+        tools::parse_scene(GetParam().below_name(), GetParam().name() + ".toml", {"output.series.points=" + points}),
+        {tools::Progress::Show::never});
+  }
+  // Without the scene, which says how often, and of the series the first and the last sample.
+  static tools::Result shared(tools::Result result) {
+    std::erase_if(result.attributes, [](const tools::Attribute& attribute) { return attribute.first == "scene"; });
+    for (tools::Group& group : result.groups)
+      if (group.name.starts_with("series"))
+        for (tools::Column& column : group.columns)
+          std::visit([width = static_cast<std::ptrdiff_t>(column.width)](
+                         auto& numbers) { numbers.erase(numbers.begin() + width, numbers.end() - width); },
+                     column.values);
+    return result;
+  }
+};
+
+TEST_P(Cadence, ChangesNothingButTheSeries) {
+  const tools::RunOutcome seldom = run("2"), often = run("3001");
+  EXPECT_EQ(seldom.warning, often.warning);
+  const auto differences = tools::differences(shared(seldom.result), shared(often.result), "seldom", "often");
+  for (const tools::Difference& found : differences.found) ADD_FAILURE() << found.place << ": " << found.what;
+}
+
+INSTANTIATE_TEST_SUITE_P(Lattices, Cadence, testing::ValuesIn(cases_in("run/lattices.txt")),
+                         [](const auto& parameter) { return parameter.param.name(); });
 
 }  // namespace cradle::tests::run_test

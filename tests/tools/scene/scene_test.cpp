@@ -1,9 +1,11 @@
-// Scenes as a user writes them: literals survive exactly, and the effective scene reads back as the same scene
-// (values.txt). What is refused, and with which message, is in tests/tools/messages.txt, lists in files are in
-// outputs.txt.
+// Scenes as a user writes them: literals survive exactly, the effective scene reads back as the same scene
+// (values.txt), ranges of times are lists of the doubles nearest to their decimals. (The decimals: decimal_test.cpp,
+// run/exact_test.cpp. What is refused, and with which message: tests/tools/messages.txt. Lists in files: outputs.txt.)
 #include "cradle/tools/scene/scene.hpp"
 
+#include "cradle/tests/core/rational.hpp"
 #include "cradle/tests/tools/cases.hpp"
+#include "cradle/tools/record/schedule.hpp"
 #include "cradle/tools/scene/fields.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
 
@@ -101,6 +103,50 @@ TEST_F(NewScene, ListsEveryKeyThatItCouldUse) {
   const Scene scene = read_scene(path("shock.toml"));
   for (const Field& field : scene_fields())
     EXPECT_TRUE(!field.when->holds(scene) || has(text, fmt::format("# {} ({})\n", field.doc, facts(field))));
+}
+
+// ---- ranges of times
+
+using test::Rational;
+
+Scene with_output(const std::string& output, const Strings& overrides = {}) {
+  const std::string ring = "law.type = 'sticky'\ninitial = { type = 'ring', particles = 10 }\nrun.until = 100\n";
+  return parse(ring + "[output]\n" + output, overrides);
+}
+
+// Of the series; 3 0.1 is above 0.3 if it is rounded, and was no sample.
+TEST(Schedule, RoundsEveryTimeOnce) {
+  const auto series = [](const std::string& keys) {
+    return Schedule(with_output(keys, {"run.start=0.1", "run.until=10.3"})).series();
+  };
+  EXPECT_EQ(Schedule(with_output("series.every = 0.1", {"run.until=0.3"})).series().rounded(),
+            (std::vector<double>{0, 0.1, 0.2, 0.3}));
+  const auto near = [](double time, const Rational& exact) {
+    const double ulp = std::nextafter(time, 1e300) - time;
+    EXPECT_LE(abs(Rational(Rational(time) - exact)), Rational(ulp) / 2) << time;
+  };
+  const Rational start(1, 10), until(103, 10);
+  const auto even = series("series = { points = 1000 }"), over = series("series = { points = 9, over = 3 }");
+  ASSERT_EQ(even.size(), 1000U);
+  for (std::size_t k = 0; k < 1000; ++k) near(even[k].value, start + (until - start) * Rational(k) / 999);
+  EXPECT_EQ(over.size(), 30U);  // up to 29/8 of the range, and the end
+  near(over[28].value, start + (3 - start) * Rational(28) / 8);
+  EXPECT_EQ(over.back().value, 10.3);
+  const auto log = series("series = { points = 20, spacing = 'log' }");
+  ASSERT_EQ(log.size(), 20U);
+  EXPECT_EQ(log.back().value, 10.3);
+  EXPECT_EQ(log[1].value, 0.1000102);
+}
+
+// Keys that take lists of times take ranges, whatever they are called.
+TEST(TimeRange, StandsInEveryKeyOfTimes) {
+  const Scene scene = with_output("snapshots = { from = 10, until = 30, every = 10 }");
+  for (const char* key : {"output.series.times", "output.snapshots", "output.masses", "output.profiles.times"})
+    EXPECT_TRUE(takes_times(*find_field(key, scene))) << key;
+  for (const char* key : {"output.series.every", "output.profiles.range", "initial.x", "run.until"})
+    EXPECT_FALSE(takes_times(*find_field(key, scene))) << key;
+  // A scene holds lists: it is the same scene, with the same text.
+  EXPECT_EQ(effective_toml(scene), effective_toml(with_output("snapshots = [10, 20, 30]")));
 }
 
 }  // namespace cradle::tools::scene_test

@@ -1,11 +1,7 @@
 // Gaps and closing speeds at the start are the exact differences of a scene's decimals, rounded once, however far from
 // the origin the particles are: in every type, between particles and to walls. The collisions that follow are those of
 // rationals.
-#include <cmath>
-#include <concepts>
-#include <limits>
 #include <random>
-#include <utility>
 
 #include "cradle/precision/scalars.hpp"
 #include "cradle/tests/precision/reference_gas.hpp"

@@ -1,9 +1,6 @@
 // Journals after any kind of end: for any contents of the disk a reader gives exactly the complete records before the
 // damage.
-
 #include "cradle/tools/store/journal.hpp"
-
-#include <algorithm>
 
 #include "cradle/tests/tools/faults.hpp"
 #include "cradle/tests/tools/program.hpp"

@@ -1,7 +1,6 @@
 // Random damage to scenes, journals and checkpoints, from which a run starts or resumes. Damage that a checksum detects
 // is reported. Contents with a correct checksum, which an attacker can write, are refused or resumed to some end,
 // without a crash and within two seconds. CRADLE_MUTATIONS=10000 makes 10000 changes instead of 200.
-#include <sys/resource.h>
 #include <unistd.h>
 
 #include <cerrno>

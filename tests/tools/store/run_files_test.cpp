@@ -1,8 +1,5 @@
 // The files beside a result during its run, as users meet them: inspected, damaged, of another version, or of another
 // run that is in the way.
-#include <algorithm>
-#include <cstring>
-
 #include "cradle/tests/tools/faults.hpp"
 #include "cradle/tests/tools/program.hpp"
 #include "cradle/tools/result/difference.hpp"

@@ -2,8 +2,6 @@
 // Files of a run that stop it at a given point, after any part of its work.
 
 #include <csignal>
-#include <functional>
-#include <utility>
 
 #include "cradle/tests/tools/program.hpp"
 #include "cradle/tools/run/run.hpp"

@@ -1,15 +1,8 @@
 // Values are read from their bytes unchanged; the checksum is compared with Boost's, bit by bit.
-
 #include "cradle/tools/support/bytes.hpp"
 
 #include <boost/crc.hpp>
 #include <gtest/gtest.h>
-
-#include <limits>
-#include <string>
-#include <tuple>
-#include <variant>
-#include <vector>
 
 namespace cradle::tests::bytes_test {
 

@@ -1,11 +1,9 @@
 // The time left of a run: exact where the cost of a unit of simulated time is constant or grows linearly, as in a dry
 // shock; nothing while the pace changes in a way that says nothing of the rest.
-
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <chrono>
 #include <cmath>
 
 #include "cradle/tools/support/progress.hpp"

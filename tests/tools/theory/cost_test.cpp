@@ -4,9 +4,6 @@
 #include "cradle/tools/setup/read_scene.hpp"
 #include "cradle/tools/theory/cost.hpp"
 
-#include <cmath>
-#include <vector>
-
 #include "cradle/core/chains/gap_chain.hpp"
 #include "cradle/core/engine/simulation.hpp"
 #include "cradle/tests/texts.hpp"

@@ -1,10 +1,6 @@
 // Scenes that start from a word keep it for as long as their digits last. (How far collisions follow a word, letter by
 // letter: tests/words/word_cases.cpp. What `cradle words` prints and writes: tests/tools/outputs.txt. What is
 // refused: tests/tools/messages.txt.)
-
-#include <cmath>
-#include <utility>
-
 #include "cradle/tests/tools/program.hpp"
 
 namespace cradle::tests::words_test {

@@ -4,10 +4,6 @@
 // all collisions of gases are made in steps.
 //
 // As steps_cases.cpp it is built with errors planted too, and must fail with each of them.
-#include <gtest/gtest.h>
-
-#include <random>
-
 #include "cradle/precision/double_double.hpp"
 #include "cradle/tests/core/parallel/steps/ways.hpp"
 

@@ -4,14 +4,6 @@
 // collapses. Nearly all collisions of gases are made in steps.
 //
 // The same program is built with errors planted in the vectors (CMakeLists.txt): it must fail with each of them.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <bit>
-#include <random>
-#include <string>
-#include <utility>
-
 #include "cradle/core/laws/one_of.hpp"
 #include "cradle/tests/core/parallel/steps/ways.hpp"
 

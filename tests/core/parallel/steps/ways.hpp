@@ -2,18 +2,10 @@
 // What the tests of steps share, whatever the numbers: runs in segments with steps, which must have the bits of the
 // plain loop in every gap, closing speed, local time, lag and loss, and in what walls gave.
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <chrono>
-#include <concepts>
 #include <cstdio>
 #include <cstdlib>
-#include <initializer_list>
-#include <optional>
 #include <random>
-#include <string>
-#include <vector>
 
 #include "cradle/core/initial/walled.hpp"
 #include "cradle/core/parallel/steps/steps.hpp"

@@ -178,11 +178,8 @@ Exit run_study_command(bool quiet, const std::function<StudyPlan()>& make_plan);
 /// Writes what a command has made, then prints `text` and, unless it is to be quiet, the name of the file.
 void put_result(const Result& result, const std::string& output, const std::string& text, bool quiet);
 
-/// A scene in lines "key = value"; `all`: also keys at their defaults.
-std::string listing(const Scene& scene, bool all);
-
-/// A summary of a result: scene, precision, times, counts. Needs only the first and last rows of the columns. Throws
-/// Error if `file` holds no scene.
+/// A summary of a result: scene, precision, times, counts; `all`: also keys at their defaults. Needs only the first and
+/// last rows of the columns. Throws Error if `file` holds no scene.
 std::string listing(const Result& result, const std::string& file, bool all);
 
 /// The Python package; names include the folders below tools/python.

@@ -52,6 +52,13 @@ std::string first_and_last(const Column& column) {
       column.values);
 }
 
+// A scene in lines "key = value"; `all`: also keys at their defaults.
+std::string listing(const Scene& scene, bool all) {
+  std::string lines = fmt::format("\nscene{}\n", all ? "" : ", where it differs from the defaults");
+  for (const auto& [key, value] : values(scene, all)) lines += fmt::format("  {} = {}\n", key, shortened(value));
+  return lines + '\n';
+}
+
 std::string listing(const Result& result, const Group& group) {
   std::size_t rows = 0;
   for (const auto& column : group.columns) rows = std::max(rows, column.rows());
@@ -66,37 +73,6 @@ std::string listing(const Result& result, const Group& group) {
     for (const auto& column : group.columns) lines += first_and_last(column);
   return lines;
 }
-
-}  // namespace
-
-std::string listing(const Scene& scene, bool all) {
-  std::string lines = fmt::format("\nscene{}\n", all ? "" : ", where it differs from the defaults");
-  for (const auto& [key, value] : values(scene, all)) lines += fmt::format("  {} = {}\n", key, shortened(value));
-  return lines + '\n';
-}
-
-std::string listing(const Result& result, const std::string& file, bool all) {
-  const Scene scene = parse_scene(attribute<std::string>(result.attributes, "scene", file), file);
-  std::string lines;
-  for (const auto& [name, value] : result.attributes)
-    if (name != "scene" && (all || value != decltype(value){std::uint64_t{0}}))
-      lines += fmt::format("{:<23} {}\n", name, text(value));
-  lines += listing(scene, all);
-  // Of many tables of one kind the first and the last.
-  std::map<std::string_view, std::size_t> of_kind, seen;
-  for (const auto& group : result.groups) ++of_kind[kind_of(group)];
-  for (const auto& group : result.groups) {
-    const std::size_t tables = of_kind[kind_of(group)], k = seen[kind_of(group)]++;
-    if (const bool folded = !all && tables > 12; folded && k >= 2 && k + 1 < tables) {
-      if (k == 2) lines += fmt::format("... {} more, which --all lists\n", tables - 3);
-    } else if (all || !is_detail(group)) {
-      lines += listing(result, group);
-    }
-  }
-  return lines;
-}
-
-namespace {
 
 struct InfoArguments {
   std::string file;
@@ -216,6 +192,27 @@ Exit follow(const InfoArguments& options) {
 }
 
 }  // namespace
+
+std::string listing(const Result& result, const std::string& file, bool all) {
+  const Scene scene = parse_scene(attribute<std::string>(result.attributes, "scene", file), file);
+  std::string lines;
+  for (const auto& [name, value] : result.attributes)
+    if (name != "scene" && (all || value != decltype(value){std::uint64_t{0}}))
+      lines += fmt::format("{:<23} {}\n", name, text(value));
+  lines += listing(scene, all);
+  // Of many tables of one kind the first and the last.
+  std::map<std::string_view, std::size_t> of_kind, seen;
+  for (const auto& group : result.groups) ++of_kind[kind_of(group)];
+  for (const auto& group : result.groups) {
+    const std::size_t tables = of_kind[kind_of(group)], k = seen[kind_of(group)]++;
+    if (const bool folded = !all && tables > 12; folded && k >= 2 && k + 1 < tables) {
+      if (k == 2) lines += fmt::format("... {} more, which --all lists\n", tables - 3);
+    } else if (all || !is_detail(group)) {
+      lines += listing(result, group);
+    }
+  }
+  return lines;
+}
 
 void add_info(CommandLine& program) {
   Command command =

@@ -39,15 +39,7 @@ inline std::vector<Group> average_tables(const Scene& scene) {
 
 class AverageMeasurement {
  public:
-  static constexpr MeasurementRow row{
-      .name = "averages",
-      .at_end = "averages",
-      .wanted = [](const Scene& scene) { return scene.output.averages.every.has_value(); },
-      .leave_out = [](Output& output) { output.averages = {}; },
-      .samples = [](const Scene& scene) { return samples_of(scene.output.averages); },
-      .tables_at_end = average_tables,
-      .of_many_collisions = true,
-  };
+  static constexpr MeasurementRow row = row_of_samples<&Output::averages>("averages", average_tables);
 
   explicit AverageMeasurement(const Measured& of) : scene_(of.scene), averages_(time_averages(of.scene, of.samples)) {}
 

@@ -26,15 +26,7 @@ inline std::vector<Group> correlation_tables(const Scene& scene) {
 
 class CorrelationMeasurement {
  public:
-  static constexpr MeasurementRow row{
-      .name = "correlations",
-      .at_end = "correlations",
-      .wanted = [](const Scene& scene) { return scene.output.correlations.every.has_value(); },
-      .leave_out = [](Output& output) { output.correlations = {}; },
-      .samples = [](const Scene& scene) { return samples_of(scene.output.correlations); },
-      .tables_at_end = correlation_tables,
-      .of_many_collisions = true,
-  };
+  static constexpr MeasurementRow row = row_of_samples<&Output::correlations>("correlations", correlation_tables);
 
   /// Throws Error for more tagged particles than memory holds.
   explicit CorrelationMeasurement(const Measured& of)

@@ -49,6 +49,18 @@ template <class Wanted> DecimalColumn samples_of(const Wanted& wanted) {
   return wanted.every ? decimals_by_step(wanted.from, *wanted.every, wanted.until) : DecimalColumn();
 }
 
+/// The row of what is found in samples alone, for the member `wanted` of Output: its one table has its name.
+template <auto wanted>
+constexpr MeasurementRow row_of_samples(std::string_view name, decltype(MeasurementRow::tables_at_end) tables) {
+  return {.name = name,
+          .at_end = name,
+          .wanted = [](const Scene& scene) { return (scene.output.*wanted).every.has_value(); },
+          .leave_out = [](Output& output) { output.*wanted = {}; },
+          .samples = [](const Scene& scene) { return samples_of(scene.output.*wanted); },
+          .tables_at_end = tables,
+          .of_many_collisions = true};
+}
+
 /// The attributes of a table of a span of time.
 template <class Wanted> std::vector<Attribute> span_of(const Wanted& wanted) {
   return {{"from", wanted.from.value}, {"until", wanted.until.value}};

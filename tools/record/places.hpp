@@ -20,16 +20,12 @@ inline double length_of(const Scene& scene, const char* key) {
 template <auto wanted, auto make, Group (*table)(const Scene&)> class PlaceMeasurement {
  public:
   static constexpr MeasurementRow row_of(std::string_view name, std::string_view average, const char* key) {
-    return {.name = name,
-            .at_end = average,
-            .wanted = [](const Scene& scene) { return (scene.output.*wanted).any(); },
-            .leave_out = [](Output& output) { output.*wanted = {}; },
-            .samples = [](const Scene& scene) { return samples_of(scene.output.*wanted); },
-            .times = [](const Output& output) -> const std::vector<Decimal>& { return (output.*wanted).times; },
-            .key = key,
-            .table_at = table,
-            .tables_at_end = averages,
-            .of_many_collisions = true};
+    MeasurementRow row = row_of_samples<wanted>(average, averages);
+    row.name = name;
+    row.wanted = [](const Scene& scene) { return (scene.output.*wanted).any(); };
+    row.times = [](const Output& output) -> const std::vector<Decimal>& { return (output.*wanted).times; };
+    row.key = key, row.table_at = table;
+    return row;
   }
 
   explicit PlaceMeasurement(const Measured& of)

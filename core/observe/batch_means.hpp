@@ -57,12 +57,14 @@ inline BatchMean mean_of_batches(const OfBatches& sums, const OfBatches& weights
 }
 
 // Ratio of errors from a quarter as many batches to those from all: 1 if batches are longer than what is correlated.
+// NaN if none can be joined: of up to 8 samples or particles no two are in neighbouring batches, and both errors are
+// one.
 inline double error_growth(const std::vector<BatchMean>& means) {
   double rough = 0, fine = 0;
   for (const BatchMean& m : means)
-    if (std::isfinite(m.error) && std::isfinite(m.rough_error))
+    if (std::isfinite(m.error) && std::isfinite(m.rough_error) && m.rough_error != m.error)
       rough += m.rough_error * m.rough_error, fine += m.error * m.error;
-  return std::sqrt(rough / fine);
+  return fine > 0 ? std::sqrt(rough / fine) : std::numeric_limits<double>::quiet_NaN();
 }
 
 // Means over samples of a list of numbers, in batches of equal length.

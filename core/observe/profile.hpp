@@ -114,12 +114,13 @@ void for_each_particle(const Configuration<T>& c, const Particles<T>& particles,
   }
 }
 
-// How fast a particle at rest may seem: what closing speeds have lost of their sum, and some roundings of the fastest.
+// How fast a particle at rest may seem: some roundings of the fastest and, where velocities are sums of closing speeds,
+// what these have lost of their sum.
 template <Real T> double rounding_of_speeds(const Configuration<T>& c) {
-  if (!c.speeds_are_sums || !c.closure_speed) return 0;
   T fastest(0);
   for (const T& v : c.v) fastest = std::max(fastest, magnitude(v));
-  return to_double(T(magnitude(*c.closure_speed) + T(4) * T(std::numeric_limits<T>::epsilon()) * fastest));
+  const T lost = c.speeds_are_sums && c.closure_speed ? magnitude(*c.closure_speed) : T(0);
+  return to_double(T(lost + T(4) * T(std::numeric_limits<T>::epsilon()) * fastest));
 }
 
 inline std::vector<double> bin_centres(BinRange range, std::size_t bins) {

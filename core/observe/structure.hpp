@@ -81,7 +81,7 @@ class PairDistribution {
 
   std::vector<double> centres() const { return bin_centres({0, distance_}, bins_); }
 
-  // g in each bin; 0 without pairs. If `stopped` stops the loop, it throws WalkStopped.
+  // g in each bin; NaN for a single particle, which has no pair. If `stopped` stops the loop, it throws WalkStopped.
   template <Real T>
   std::vector<double> operator()(const Configuration<T>& c, const Particles<T>& particles, const T& elapsed,
                                  const std::function<bool()>& stopped = {}) const {
@@ -101,7 +101,7 @@ class PairDistribution {
       }
     }
     const auto particle_count = static_cast<double>(count);
-    const double all = std::max(particle_count * (particle_count - 1) / 2, 1.);
+    const double all = count > 1 ? particle_count * (particle_count - 1) / 2 : std::numeric_limits<double>::quiet_NaN();
     std::vector<double> g;
     for (std::size_t bin = 0; bin < bins_; ++bin)
       g.push_back(static_cast<double>(pairs[bin]) / (all * (share_below(bin + 1) - share_below(bin))));

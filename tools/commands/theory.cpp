@@ -24,8 +24,8 @@ Exit theory(const TheoryArguments& options) {
     return Exit::done;
   }
   if (table.empty()) {
-    fmt::print("no predictions: the paper's are for rows and rings of equal masses, at constant restitution, without "
-               "walls and gravity\n");
+    fmt::print("no predictions: the paper's are for rows and rings of particles of mass 1, at constant restitution, "
+               "without walls and gravity\n");
     return Exit::done;
   }
   fmt::print("{:<31}{:<18}{:<12}{:>12}  {}\n", "quantity", "equation", "form", "t", "value");

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 
@@ -14,12 +15,16 @@ namespace cradle::tools {
 
 namespace {
 
+// NaN has one form.
+std::string text_of(double x) { return std::isnan(x) ? "nan" : fmt::format("{}", x); }
+template <class Value> std::string text_of(const Value& x) { return fmt::format("{}", x); }
+
 // A comment for each attribute, also for text of several lines; the scene has a file.
 std::string comments(const std::vector<Attribute>& attributes) {
   std::string text;
   for (const auto& [name, value] : attributes) {
     if (name == "scene") continue;
-    std::string one = std::visit([](const auto& v) { return fmt::format("{}", v); }, value);
+    std::string one = std::visit([](const auto& v) { return text_of(v); }, value);
     for (std::size_t at = one.find('\n'); at != one.npos; at = one.find('\n', at + 1)) one.insert(at + 1, "#   ");
     text += fmt::format("# {} = {}\n", name, one);
   }
@@ -112,10 +117,9 @@ std::string csv(const Group& group) {
     separator.clear();
     for (const auto& column : group.columns)
       for (std::size_t i = 0; i < column.width; ++i)
-        append(
-            row < column.rows()
-                ? std::visit([&](const auto& v) { return fmt::format("{}", v[row * column.width + i]); }, column.values)
-                : std::string());
+        append(row < column.rows()
+                   ? std::visit([&](const auto& v) { return text_of(v[row * column.width + i]); }, column.values)
+                   : std::string());
     text += '\n';
   }
   return text;

@@ -429,7 +429,7 @@ const std::vector<Field> fields_after_walls{
     {"output.pair_distribution.until", output_of<&Output::pair_distribution, &Pairs::until>, "t", "run.until",
      "[output.pair_distribution.from, run.until]", &pairs_averaged, "no sample of the average is later", end_of_run},
     {"output.pair_distribution.distance", output_of<&Output::pair_distribution, &Pairs::distance>, "l", "required",
-     "(0, inf)", &paired, "pairs up to this distance are counted: half of a ring at most"},
+     "(0, inf)", &paired, "pairs nearer than this are counted: half of a ring at most"},
     {"output.pair_distribution.bins", output_of<&Output::pair_distribution, &Pairs::bins>, "", "50", "[1, 1e5]",
      &paired, "number of bins of the pair distribution"},
     {"output.core", output_of<&Output::core>, "", "false", "", &on_line,

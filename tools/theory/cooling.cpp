@@ -13,7 +13,7 @@ constexpr double few = 10;
 void predict_cooling(const Scene& scene, Predictions& table) {
   const auto particles = static_cast<double>(scene.initial.particles);
   const theory::FreeCooling gas{scene.initial.variance.value, particles / scene.initial.length.value};
-  const double until = scene.run.until.value - scene.run.start.value;
+  const double until = span(scene);
   const double flight = 1 / (gas.density * std::sqrt(gas.variance));  // a mean spacing at the thermal speed
   const bool dry = scene.law.type == LawType::inelastic;
   if (!(until > flight) || (dry && scene.law.restitution == Decimal("1"))) return;

@@ -20,14 +20,6 @@ namespace cradle::tools {
 
 namespace {
 
-double span(const Scene& scene) { return scene.run.until.value - scene.run.start.value; }
-
-// The number of layers of one row that a particle of the other would meet if the rows did not slow each other: K = 2 u0
-// t/l.
-double layers(const Scene& scene, double time) {
-  return 2 * scene.initial.speed.value * time / scene.initial.spacing.value;
-}
-
 // An upper bound for the particles of a cold gas that are reached: no particle is faster than one with all the energy.
 double reached_when_cold(const Scene& scene) {
   const Initial& initial = scene.initial;
@@ -61,26 +53,6 @@ double particles_at_end(const Scene& scene) {
   const double speed = initial.speed.value;
   return scene.law.type == LawType::wet ? std::min(reached(scene), 20 * speed * speed / scene.law.loss.value)
                                         : reached(scene);
-}
-
-// Collisions of two rows that bounce, as a share of the collisions of infinite elastic rows, K(K + 1)/2, as a function
-// of s = K (1-eps)/(1+eps). The points are counted in runs with eps = 0.999, N = 8000. Runs with N = 16000, and with
-// eps = 0.992, follow them closely below s = 3; eps = 0.9 does within 10 to 20 %; eps = 0.5 does not. At first the
-// share falls as ln(1+s)/s, since particles slow down: that is the share for the first particle of a row. From s = 1.8
-// particles of the dense core collide repeatedly, more and more often up to inelastic collapse at s = 3.25.
-struct Share {
-  double s, share;
-};
-constexpr Share counted[] = {{0, 1},      {.125, .921}, {.25, .862}, {.375, .811},   {.5, .768},    {.75, .700},
-                             {1, .650},   {1.25, .612}, {1.5, .583}, {1.75, .562},   {2, .586},     {2.25, .644},
-                             {2.5, .716}, {2.75, .795}, {3, .897},   {3.127, 1.054}, {3.252, 1.642}};
-constexpr const Share& last_counted = *std::rbegin(counted);
-
-double share_of_elastic(double s) {
-  if (s >= last_counted.s) return last_counted.share;
-  const auto* above = std::ranges::upper_bound(counted, s, {}, &Share::s);
-  const auto* below = above - 1;
-  return below->share + (above->share - below->share) * (s - below->s) / (above->s - below->s);
 }
 
 // A run of many particles that ends by itself although no collapse is proved.
@@ -187,22 +159,6 @@ bool watched_for_rounding(const Scene& scene, double particles) {
 }
 
 }  // namespace
-
-void bouncing_rows(const Scene& scene, Cost& cost) {
-  const double eps = scene.law.restitution.value, kappa = (1 - eps) / (1 + eps);
-  const double particles = static_cast<double>(scene.initial.particles), half = particles / 2;
-  double met = layers(scene, span(scene));
-  const auto onset = theory::collapse_onset_particles(eps);
-  const bool may_collapse = onset && particles >= *onset;
-  if (may_collapse && met * kappa > last_counted.s) {
-    met = last_counted.s / kappa;
-    cost.collapse = scene.run.start.value + span(scene) * met / layers(scene, span(scene));
-  }
-  cost.collisions = met * (met + 1) / 2 * share_of_elastic(met * kappa);
-  // Rows may pass through each other before a collapse: then each particle meets every particle of the other row once,
-  // and some more often, the closer their number is to that of a collapse.
-  if (!may_collapse) cost.collisions = std::min(*cost.collisions, half * half * (1 + (onset ? particles / *onset : 0)));
-}
 
 // Wet particles reached by the front lose their energy m u0^2/2: E_loss per collision, and half of that in the last one
 // (3 collisions per particle at E_loss = 0.05, as counted in Fig. 11).

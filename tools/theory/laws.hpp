@@ -2,6 +2,7 @@
 // each law. They end where a front has passed through the other row.
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -61,14 +62,27 @@ struct LawTheory {
 /// The row of the scene's law; an empty one if it has none.
 const LawTheory& law_theory(const Scene& scene);
 
+/// How long a run lasts.
+inline double span(const Scene& scene) { return scene.run.until.value - scene.run.start.value; }
+/// The number of layers of one row that a particle of the other would meet if the rows did not slow each other: K = 2
+/// u0 t/l.
+inline double layers(const Scene& scene, double time) {
+  return 2 * scene.initial.speed.value * time / scene.initial.spacing.value;
+}
+
 /// Points of a curve, from 0 to its end.
 inline constexpr int curve_points = 400;
 inline double curve_time(double end, int k) { return end * k / curve_points; }
 
-/// Whether the paper's formulas apply: two equal rows of particles of mass 1 and of constant restitution.
+/// Whether the paper's formulas apply: two equal rows of particles of mass 1 and of constant restitution, which meet
+/// nothing else, and whose law is changed, if at all, only below a tenth of their closing speed or of the time between
+/// the first collisions: up to there collisions differ by 6 %.
 inline bool equal_rows(const Scene& scene) {
+  const double closing = 2 * scene.initial.speed.value, flight = scene.initial.spacing.value / closing;
   return scene.initial.type == InitialType::rows && !scene.initial.general_rows() && !unequal_masses(scene) &&
-         !scene.law.cutoff_exponent;
+         !scene.walls.any() && !scene.gravity.acts() && !scene.law.cutoff_exponent &&
+         10 * std::max(scene.law.cutoff.value, scene.run.merge_speed.value) <= closing &&
+         10 * scene.run.contact_time.value <= flight;
 }
 
 void predict_inelastic(const Scene& scene, Predictions& table);

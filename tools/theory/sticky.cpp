@@ -42,7 +42,7 @@ void predict_sticky(const Scene& scene, Predictions& table) {
   table.number("central_mass_growth", "section II", "continuous", theory::late_growth(rows.shock));
   table.number("central_velocity", "section II", "continuous", theory::late_velocity(rows.shock));
   table.number("energy_loss_rate", "section IV", "continuous", theory::late_power(rows.shock));
-  const double until = scene.run.until.value - scene.run.start.value;
+  const double until = span(scene);
   for (int k = 0; k <= curve_points; ++k) {
     const double t = curve_time(until, k);
     const auto centre = theory::sticky_centre(rows.shock, t);

@@ -117,7 +117,7 @@ void predict_wet(const Scene& scene, Predictions& table) {
   shock.particles = scene.initial.particles;
   add_zone(table, shock);
   if (clusters) return;
-  const double until = scene.run.until.value - scene.run.start.value;
+  const double until = span(scene);
   table.number("initial_energy", "N m u0^2/2", "continuous", theory::initial_energy(shock));
   const bool lattice = scene.initial.positions == Positions::lattice;
   add_front(table, shock, until, lattice);

@@ -82,6 +82,11 @@ TEST(TimeAverages, ShowBatchesThatAreTooShort) {
   // With 8 of 32 batches the squares are those of the same numbers, over 7 instead of 31.
   EXPECT_NEAR(slow.error_growth(), std::sqrt(31 / 7.), 1e-12);
   EXPECT_LT(quick.error_growth(), 1.3);
+  OfBatches sums{}, weights{};
+  for (std::size_t b = 0; b < batches; b += 4) sums[b] = static_cast<double>(b * b), weights[b] = 1;
+  const BatchMean alone = mean_of_batches(sums, weights);  // no two are in batches that can be joined
+  EXPECT_GT(alone.error, 0);
+  EXPECT_TRUE(std::isnan(error_growth({alone})));
 }
 
 TEST(TimeAverages, ContinueFromASavedState) {

@@ -36,6 +36,19 @@ TEST(Profile, OfAKnownConfiguration) {
   EXPECT_TRUE(std::isnan(p.velocity_left[1]));
 }
 
+// Merged particles at rest are left with a rounding of their partners' speeds, which is no motion.
+TEST(Profile, ARoundingOfTheFastestIsRest) {
+  Simulation run(InelasticMerging<double>(Inelastic(0.), 1e9),
+                 ClusterChain<double>(list<double>({0, 1, 2, 3}, {0.3, 0.1, -0.3, -0.1}), 0.));
+  ASSERT_EQ(run.advance(100.), Status::reached);
+  ASSERT_EQ(run.counts().merges, 3U);
+  auto c = run.configuration(100.);
+  c.v[0] = -1e-17, c.v.push_back(1), c.x.push_back(5), c.m.push_back(1), c.index.push_back(4);
+  const Profile p = profile(c, *list<double>({0, 1, 2, 3, 5}, {0.3, 0.1, -0.3, -0.1, 1}), 100., {-9, 9}, 1);
+  EXPECT_EQ(p.density_left[0], 0);
+  EXPECT_EQ(p.density_right[0], 1. / 18);
+}
+
 TEST(Profile, EmptyBinsHaveNoVelocity) {
   const auto particles = list<double>({0, 1}, {0, 0});
   const Profile p = at_start(particles, {10, 20}, 3);

@@ -122,7 +122,7 @@ TEST(PairDistribution, OfFewParticles) {
   const PairDistribution pairs(5, 5, 10, true);
   const auto g = pairs(placed({1, 9}, {0, 0}), *list<double>({1, 9}, {0, 0}), 0.);  // 2 apart over the seam
   for (std::size_t bin = 0; bin < 5; ++bin) EXPECT_DOUBLE_EQ(g[bin], bin == 2 ? 5 : 0);
-  EXPECT_EQ(pairs(placed({1}, {0}), *list<double>({1}, {0}), 0.), std::vector<double>(5));
+  for (const double alone : pairs(placed({1}, {0}), *list<double>({1}, {0}), 0.)) EXPECT_TRUE(std::isnan(alone));
   EXPECT_THROW(PairDistribution(6, 5, 10, true), std::invalid_argument);
   EXPECT_THROW(PairDistribution(11, 5, 10, false), std::invalid_argument);
   EXPECT_THROW(PairDistribution(5, 0, 10, false), std::invalid_argument);

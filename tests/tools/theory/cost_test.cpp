@@ -4,6 +4,8 @@
 #include "cradle/tools/setup/read_scene.hpp"
 #include "cradle/tools/theory/cost.hpp"
 
+#include <sstream>
+
 #include "cradle/core/chains/gap_chain.hpp"
 #include "cradle/core/engine/simulation.hpp"
 #include "cradle/tests/texts.hpp"
@@ -79,6 +81,43 @@ TEST(ExpectedCollisions, OfFewParticlesBetweenWallsAreThoseOfTheirPairs) {
   double collisions = 0;
   for (; scene.initial.replica < replicas; ++scene.initial.replica) collisions += counted(scene) / replicas;
   EXPECT_NEAR(*expected_cost(scene).collisions / collisions, 1, four_deviations(6 * replicas));
+}
+
+// Rows that pass through each other: all pairs of both rows, and within each row once it has contracted. Between the
+// two the estimate is a line, good to a quarter; near the number of a collapse it is a fit, good to a tenth.
+TEST(ExpectedCollisions, OfRowsThatPassEachOtherAreThoseOfTheirPairs) {
+  for (const auto& [settings, off] : std::vector<std::pair<std::string, double>>{{"0.98 60 200", 0.01},
+                                                                                 {"0.98 60 2000", 0.01},
+                                                                                 {"0.99 200 500", 0.25},
+                                                                                 {"0.995 400 700", 0.01},
+                                                                                 {"0.995 400 9000", 0.01},
+                                                                                 {"0.92 60 400", 0.1},
+                                                                                 {"0.99 400 2000", 0.1}}) {
+    std::istringstream words(settings);
+    std::string restitution, particles, until;
+    words >> restitution >> particles >> until;
+    const Scene scene =
+        scene_of("law = { type = 'inelastic', restitution = " + restitution + " }\nrun.until = " + until +
+                 "\ninitial = { type = 'rows', speed = 0.5, perturbation = 0.1, particles = " + particles + " }\n");
+    EXPECT_NEAR(expected_cost(scene).collisions.value() / counted(scene), 1, off) << settings;
+  }
+}
+
+// What two rows that meet nothing else do says nothing of those between walls or under gravity, nor of collisions that
+// the cut-off makes elastic.
+TEST(ExpectedCollisions, OfOtherRowsAreNotKnown) {
+  const std::string rows = "law = { type = 'inelastic', restitution = 0.9 }\nrun.until = 300\n"
+                           "initial = { type = 'rows', particles = 50, speed = 0.5, perturbation = 0.2 }\n";
+  EXPECT_TRUE(expected_cost(scene_of(rows)).collisions);
+  for (const char* key : {"walls.left.position=-30", "walls.right={position=30, temperature=1}", "law.cutoff=0.5",
+                          "run.collapse=contact-time", "run.collapse=merge"}) {
+    std::vector<std::string> set{key};
+    if (set[0].ends_with("time")) set.push_back("run.contact_time=1");
+    if (set[0].ends_with("merge")) set.push_back("run.merge_speed=1");
+    const Scene scene = parse_scene(rows, "rows.toml", set);
+    EXPECT_FALSE(expected_cost(scene).collisions) << key;
+    EXPECT_FALSE(expected_cost(scene).collapse) << key;
+  }
 }
 
 TEST(ExpectedCollisions, OnAFloorHaveNoPaceUnlessParticlesRestThere) {

@@ -161,11 +161,12 @@ bool watched_for_rounding(const Scene& scene, double particles) {
 }  // namespace
 
 // Wet particles reached by the front lose their energy m u0^2/2: E_loss per collision, and half of that in the last one
-// (3 collisions per particle at E_loss = 0.05, as counted in Fig. 11).
+// (3 collisions per particle at E_loss = 0.05, as counted in Fig. 11), but each sticks once.
 void wet_rows(const Scene& scene, Cost& cost) {
-  const double particles = reached(scene), met = std::min(particles, static_cast<double>(scene.initial.particles) / 2);
+  const double met = layers(scene, span(scene)), half = static_cast<double>(scene.initial.particles) / 2;
   const double energy = scene.initial.speed.value * scene.initial.speed.value / 2;
-  cost.collisions = std::min(met * (met + 1) / 2, particles * (energy / scene.law.loss.value + 0.5));
+  cost.collisions = std::min(
+      {met * (met + 1) / 2, half * half, reached(scene) * (std::max(energy / scene.law.loss.value, 0.5) + 0.5)});
 }
 
 // Each particle merges once.

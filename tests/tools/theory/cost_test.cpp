@@ -101,6 +101,11 @@ TEST(ExpectedCollisions, OfRowsThatPassEachOtherAreThoseOfTheirPairs) {
                  "\ninitial = { type = 'rows', speed = 0.5, perturbation = 0.1, particles = " + particles + " }\n");
     EXPECT_NEAR(expected_cost(scene).collisions.value() / counted(scene), 1, off) << settings;
   }
+  // Wet particles that lose nothing are elastic.
+  EXPECT_EQ(expected_cost(scene_of("law = { type = 'wet', loss = 0 }\nrun.until = 200\ninitial = { type = 'rows', "
+                                   "speed = 0.5, perturbation = 0.1, particles = 50 }\n"))
+                .collisions,
+            625);
 }
 
 // What two rows that meet nothing else do says nothing of those between walls or under gravity, nor of collisions that

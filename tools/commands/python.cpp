@@ -77,14 +77,14 @@ int execute(const std::vector<std::string>& words, bool silent) {
 }
 
 // The first Python that has the packages for pictures; python3 may not have them. It only searches for the packages:
-// importing them would take longer than some pictures.
+// importing them would take longer than some pictures. Its answer is a status that other programs do not give.
 std::string find_python() {
   std::vector<std::string> candidates{"python3", "/usr/bin/python3"};
   if (const char* chosen = std::getenv("CRADLE_PYTHON")) candidates = {chosen};
   const std::string probe = "import sys; from importlib.util import find_spec; "
-                            "sys.exit(not all(map(find_spec, ('h5py', 'matplotlib', 'numpy'))))";
+                            "sys.exit(42 * all(map(find_spec, ('h5py', 'matplotlib', 'numpy'))))";
   for (const auto& python : candidates)
-    if (execute({python, "-c", probe}, true) == 0) return python;
+    if (execute({python, "-c", probe}, true) == 42) return python;
   throw Error({}, "no Python with h5py and matplotlib", fmt::format("tried {}", fmt::join(candidates, ", ")),
               "install python3-h5py and python3-matplotlib (Debian's names), or set CRADLE_PYTHON to one that has them",
               Exit::io);

@@ -4,9 +4,11 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <fstream>
 
 #include "cradle/tools/result/reader.hpp"
 #include "cradle/tools/run/run.hpp"
+#include "cradle/tools/store/journal.hpp"
 
 namespace cradle::tools {
 
@@ -66,6 +68,15 @@ void check_overwrite(const std::string& file, const std::string& command, const 
 void check_overwrite(const std::string& file, const Result& made, Force force) {
   const Scene scene = parse_scene(attribute<std::string>(made.attributes, "scene", file), file);
   check_overwrite(file, command_of(made), &scene, force);
+}
+
+void check_overwrite(const std::string& file, Force force) {
+  if (force == Force::yes || nothing_to_lose(file)) return;
+  std::string begin(begin_of(Stored::checkpoint));
+  begin.pop_back();  // the format: those of other versions are checkpoints too
+  std::string found(begin.size(), '\0');
+  std::ifstream(file, std::ios::binary).read(found.data(), static_cast<std::streamsize>(found.size()));
+  if (found != begin) refuse(file, "not a saved simulation", "something else");
 }
 
 }  // namespace cradle::tools

@@ -27,4 +27,7 @@ void check_overwrite(const std::string& file, const std::string& command, const 
 /// The same for a result that is made already, of any command.
 void check_overwrite(const std::string& file, const Result& made, Force force);
 
+/// The same for the saved state of a simulation: it replaces any checkpoint.
+void check_overwrite(const std::string& file, Force force);
+
 }  // namespace cradle::tools

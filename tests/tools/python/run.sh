@@ -17,4 +17,4 @@ export CRADLE_PYTHON=$python  # which the program then need not look for
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder"
-"$python" -W error::ResourceWarning "$here/run.py" "$file" "${@:3}"
+"$python" -W error::ResourceWarning -W error::UserWarning "$here/run.py" "$file" "${@:3}"

@@ -6,6 +6,7 @@ import time
 from unittest import mock
 
 import h5py
+import numpy as np
 
 import cradle
 import cradle.errors
@@ -27,7 +28,7 @@ class Files(small.Case):
         os.makedirs("folder.h5")
         os.mkfifo("pipe.h5")
         for path, wrong in (("nothing.h5", "No such file"), ("folder.h5", "directory"), ("pipe.h5", "FIFO or device"),
-                            ("/dev/zero", "FIFO or device"), ("a\0b", "null (byte|character)")):
+                            ("/dev/zero", "FIFO or device")):
             self.refused(path, wrong)
         for path, content, wrong in (("empty.h5", b"", "empty file"), ("foreign.h5", b"not HDF5 at all", "no HDF5"),
                                      ("head.h5", b"\x89HDF\r\n\x1a\n", "cannot be read|can be read")):
@@ -102,6 +103,7 @@ class Arguments(small.Case):
                 ("save:", sim.save, 5), ("load:", cradle.Simulation.load, None)):
             self.refused(wrong, call, *arguments)
         self.refused("restitution:", cradle.Simulation, "collapse3", restitution=0.5)
+        self.refused("initial.seed", cradle.Simulation, "collapse3", seed="")
         sim.step(2 ** 64)  # more than there are
         self.assertTrue(sim.over)
         self.refused("write:", sim.write, 5)
@@ -116,12 +118,29 @@ class Arguments(small.Case):
                          (whole.collisions, whole.decimals("energy"), whole.time))
 
     def test_of_commands(self):
+        endless = {"law": {}}
+        endless["law"]["law"] = endless
         for wrong, call, *arguments in (
                 ("scene", cradle.run, 5), ("scene", cradle.check, 5), ("set:", cradle.run, "fig2", 5),
                 ("open", cradle.open, 5), ("character 0", cradle.run, "collapse3", {"title": "a\0b"}),
-                ("resume", cradle.resume, 5)):
-            self.refused(wrong, call, *arguments)
+                ("resume", cradle.resume, 5), ("open", cradle.open, "a\0b"), ("set:", cradle.run, "fig2", {5: {}}),
+                ("set:", cradle.run, "fig2", endless), ("set:", cradle.run, "fig2", {"initial.seed": 10 ** 5000}),
+                ("scene", cradle.run, endless), ("scene", cradle.run, {"title": "\ud800"}),
+                ("points:", cradle.sweep, "fig2", None, None), ("new:", cradle.new, None), ("new:", cradle.new, b"x"),
+                *(("vary:", call, "fig2", bad) for call in (cradle.sweep, cradle.threshold) for bad in ("a=1", 5)),
+                ("diff:", cradle.diff, 3, small.shock()), ("export:", cradle.export, 3, "csv")):
+            self.refused(wrong, call, *arguments, **{"points": 5} if wrong == "points:" else {})
+        super().refused(2, "rtol: nothing is given", cradle.diff, small.shock(), small.shock(), rtol="")
         self.refused("output", cradle.run, "collapse3", output=5)
+        self.refused("output", cradle.report, small.shock(), output=5)
+        with cradle.open(small.shock()) as result:
+            for time in (None, float("nan"), "soon"):
+                self.refused("at: not a time", result.snapshots.at, time, "nearest")
+            self.assertEqual(result.snapshots.at("20").time, 20)
+        for force in ("x", 1.5, -1, np.True_):
+            cradle.run("collapse3", {"law.restitution": 0.05}, output="forced.h5", force=force).close()
+            cradle.run("collapse3", {"law.restitution": 0.06}, output="forced.h5", force=force).close()
+        cradle.run("collapse3", {"law.restitution": 0.06}, output="forced.h5", force=None).close()
         self.refused(r"run: no such argument \(found restitution\): .*set={'law.restitution'", cradle.run, "fig2",
                      restitution=0.9)
 

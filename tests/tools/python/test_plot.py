@@ -296,6 +296,17 @@ class Pictures(small.Case):
             cradle.plot.energy(small.shock())
             self.assertEqual(matplotlib.rcParams["lines.linewidth"], 7)
 
+    def test_none_warns_of_little_data_or_of_its_title(self):
+        # run.sh makes the warnings of matplotlib errors.
+        for name, scene, own in (("one", "cooling", {"initial.particles": 1, "run.until": 9, "output.snapshots": []}),
+                                 ("start", "fig5", {"run.until": 0, "output.snapshots": [0]}),
+                                 ("lags", "classics/diffusion", {"run.until": 0}),
+                                 ("long", "fig5", {"title": "x" * 5000}), ("other", "fig5", {"title": "\u6f22 $ $"})):
+            cradle.run(scene, own, output=name + ".h5").close()
+            self.assertTrue(cradle.plot.save(name + ".h5", name + ".png"))
+        self.assertIn("\ufffd \\$ \\$", cradle.plot("other.h5")._suptitle.get_text())
+        self.assertLess(len(cradle.plot("long.h5")._suptitle.get_text()), 300)
+
     def test_kinds_that_cannot_be_written(self):
         self.refused(2, "", cradle.plot.save, small.shock(), "it.gif")
         self.assertFalse(os.path.exists("it.gif"))

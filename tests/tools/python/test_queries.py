@@ -86,6 +86,13 @@ class Settings(small.Case):
         self.assertEqual(self.value("output.snapshots", {"output": {"snapshots": {"from": 0, "until": 2, "every": 1}}}),
                          [0, 1, 2])
 
+    def test_booleans_of_numpy(self):
+        for set in ({"output.events": np.bool_(True)}, {"output": {"events": np.array(True)}}):
+            self.assertIs(self.value("output.events", set), True)
+        with cradle.run({"law": {"type": "sticky"}, "initial": {"type": "rows"}, "run": {"until": 1},
+                         "output": {"events": np.bool_(True)}}, output="events.h5") as result:
+            self.assertIn("left", result.events)
+
     def test_none_unsets_a_key(self):
         self.assertEqual(self.value("law.cutoff", {"law.cutoff": None}), 0, "the default, not the scene's 1e-5")
         self.assertEqual(cradle.check({"law": {"type": "sticky", "restitution": None}, "run": {"until": 1},

@@ -1,10 +1,12 @@
 """cradle.Simulation: the bytes of `cradle run` however a run is advanced, stopped, saved and loaded, in every scalar
 type; its state is that of snapshots; functions are called when they should be, their exceptions and Ctrl-C arrive and
 change nothing; other threads run; nothing is kept alive."""
+import copy
 import filecmp
 import gc
 import itertools
 import os
+import pickle
 import shutil
 import signal
 import sys
@@ -347,6 +349,18 @@ class Calls(small.Case):
         self.assertIn('cradle.Simulation.load("said.checkpoint") in Python continues from it', said)
         self.assertRegex(said, "t = 10, [0-9]+ collisions")
         self.refused(4, "a checkpoint, not a result.*Simulation.load", cradle.open, "said.checkpoint")
+
+    def test_a_checkpoint_replaces_only_a_checkpoint(self):
+        sim = shock()
+        shutil.copy(small.shock(), "mine.h5")
+        self.refused(2, "mine.h5: not a saved simulation .found something else.: give another output, or force=True",
+                     sim.save, "mine.h5")
+        self.assertTrue(filecmp.cmp(small.shock(), "mine.h5", shallow=False))
+        for again in (True, False):
+            sim.save("mine.h5", force=again)
+        self.assertEqual(cradle.Simulation.load("mine.h5").time, 0)
+        for copied in (copy.copy, copy.deepcopy, pickle.dumps):
+            self.refused(2, "cannot be copied or pickled .found one at t = 0.: save", copied, sim)
 
     def test_what_is_lost_is_a_warning(self):
         settings = small.SHOCK | {"law.restitution": 0.3, "law.cutoff": 0, "run.coordinates": "absolute"}

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import os
 import sys
+import warnings
 
 if not __package__:  # run as a folder, which then is no package yet
     sys.path[0] = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
@@ -17,6 +18,7 @@ from cradle.errors import BAD_FILE, BAD_INPUT, Error  # noqa: E402
 
 def main(words: list[str]) -> int:
     os.environ["MPLBACKEND"] = "Agg"
+    warnings.filterwarnings("ignore", module=r"(cradle\.drawing|matplotlib|numpy)\b")  # of data too few for a picture
     try:
         if (len(words) < 4 or words[0] not in ("plot", "report") or words[2] != "-o"
                 or words[4:] not in ([], ["--force"])):
@@ -25,9 +27,14 @@ def main(words: list[str]) -> int:
         force = len(words) == 5
         made = (cradle.plot.save(file, output, force=force) if command == "plot"
                 else [cradle.report(file, output, force=force)])
-        print(*made, sep="\n", flush=True)  # at the end: all are made before anybody can stop reading
+        with open(1, "wb", closefd=False) as out:  # at the end: all are made before anybody can stop reading
+            out.write(b"".join(os.fsencode(path) + b"\n" for path in made))
     except BrokenPipeError:  # nobody reads the names of what was made: `cradle plot FILE | head -1`
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        pass
+    except OSError:
+        print("cradle: standard output cannot be written: check where it goes, a full disk or a program that has ended",
+              file=sys.stderr)
+        return BAD_FILE
     except Error as error:
         print(f"cradle: {error}", file=sys.stderr)
         return error.status

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any, Union
 
 from . import program
-from .errors import BAD_INPUT, COLLAPSE, DONE, LOST, Error, in_python, path_of
+from .errors import BAD_INPUT, COLLAPSE, DONE, LOST, Error, argument, in_python, path_of
 from .program import Show
 from .result import Result, open
 from .scene import scene_text, value_text
@@ -37,7 +37,7 @@ def run(scene: Scene, set: Settings = None, **common) -> Result:
     Raises Error with the program's message and status; if collisions were lost (5) its `result` is the incomplete one.
     What the program says on the way is a RuntimeWarning: until when collisions are certain, what acts on nothing.
     """
-    return compute("run", ".h5", scene, set, [], **common)
+    return compute("run", ".h5", scene, set, {}, **common)
 
 
 def ensemble(scene: Scene, replicas: int, set: Settings = None, *, first: int = 0, spread: Sequence[str] = (),
@@ -47,7 +47,7 @@ def ensemble(scene: Scene, replicas: int, set: Settings = None, *, first: int = 
     spread: "NAME=FROM:TO:BINS", quantities of the series whose values are counted in bins. Other arguments as in run().
     Raises Error; if replicas failed (5) its `result` has the others.
     """
-    options = ["--replicas", replicas, "--first", first, *repeated("--spread", spread)]
+    options = {"replicas": replicas, "first": first, "spread": spread}
     return compute("ensemble", "-ensemble.h5", scene, set, options, **common)
 
 
@@ -59,10 +59,7 @@ def sweep(scene: Scene, vary: Settings = None, set: Settings = None, *, cuts: bo
         cuts, one at a time. points: single points, `{"law.loss": 0.01, "initial.speed": 1}` each.
         Without both, the scene says what to sweep. Other arguments as in run().
     """
-    options = repeated("--vary", (f"{key}={bare(values, ',')}" for key, values in (vary or {}).items()))
-    options += repeated("--point", (" ".join(f"{key}={bare(value)}" for key, value in point.items())
-                                    for point in points))
-    options += ["--cuts"] * cuts + option("--replicas", replicas) + ["--first", first]
+    options = {"vary": vary, "points": points, "cuts": cuts, "replicas": replicas, "first": first}
     return compute("sweep", "-sweep.h5", scene, set, options, **common)
 
 
@@ -72,8 +69,7 @@ def trust(scene: Scene, set: Settings = None, *, digits: Sequence[int] = (), bot
     digits: the precisions to compare, the reference last; by default they rise until two runs agree. both: also runs
     in positions. Other arguments as in run().
     """
-    options = option("--digits", ",".join(map(str, digits)) or None) + ["--both"] * both
-    return compute("trust", "-trust.h5", scene, set, options, **common)
+    return compute("trust", "-trust.h5", scene, set, {"digits": digits, "both": both}, **common)
 
 
 def certify(scene: Scene, set: Settings = None, *, digits: Sequence[int] = (), replicas: int | None = None,
@@ -82,8 +78,7 @@ def certify(scene: Scene, set: Settings = None, *, digits: Sequence[int] = (), r
 
     digits: of the proof, tried in turn. replicas: how many to prove; writes their statistics. Others as in run().
     """
-    options = option("--digits", ",".join(map(str, digits)) or None) + option("--replicas", replicas)
-    return compute("certify", "-certified.h5", scene, set, options, **common)
+    return compute("certify", "-certified.h5", scene, set, {"digits": digits, "replicas": replicas}, **common)
 
 
 def threshold(scene: Scene, vary: Settings, set: Settings = None, *, outcome: str | None = None,
@@ -94,24 +89,43 @@ def threshold(scene: Scene, vary: Settings, set: Settings = None, *, outcome: st
     vary: the key and its range, `{"law.restitution": "0.05:0.1"}`. outcome: what is compared. digits: of the value.
     proof: whether the last two outcomes are to be proved. Other arguments as in run().
     """
-    (key, values), = vary.items()
-    options = ["--vary", f"{key}={bare(values, ':')}", *option("--outcome", outcome), *option("--digits", digits)]
-    return compute("threshold", "-threshold.h5", scene, set, options + ["--no-proof"] * (not proof), **common)
+    options = {"range": vary, "outcome": outcome, "digits": digits, "no-proof": not proof}
+    return compute("threshold", "-threshold.h5", scene, set, options, **common)
 
 
 def resume(path: str | os.PathLike, until: Any = None, *, threads: int | None = None,
            progress: bool | Show | None = None) -> Result:
     """Continues a run, an ensemble or a sweep that was stopped, or, with `until`, extends it; returns its result."""
     path = path_of(path, "resume")
-    return called(["resume", path, *option("--until", until)], path, threads, progress)
+    return called(["resume", path, *words_of(until=until)], path, threads, progress)
 
 
-def option(name: str, value: Any) -> list[str]:
-    return [] if value is None else [name, str(value)]
+# How arguments become options. Others have the value as it is, and none for None and for an empty list.
+FLAGS = ("both", "cuts", "force", "no-proof")
+REPEATED = {"set": lambda set: ("--set", assignments(set)), "spread": lambda values: ("--spread", values),
+            "vary": lambda vary: ("--vary", pairs(vary, ",")), "range": lambda vary: ("--vary", pairs(vary, ":")),
+            "points": lambda points: ("--point", [" ".join(pairs(point)) for point in points])}
 
 
-def repeated(name: str, values: Iterable[str]) -> list[str]:
-    return [word for value in values for word in (name, value)]
+def words_of(**arguments) -> list[str]:
+    """Arguments of a function as words for the program. Raises Error for one of which none can be made."""
+    words: list[str] = []
+    for name, value in arguments.items():
+        with argument(name.replace("range", "vary"), value, "what this argument takes",
+                      "give keys and values as a dict, {'run.until': 5} for instance; help() says what else there is"):
+            if name in FLAGS:
+                words += [f"--{name}"] * bool(value)
+            elif name in REPEATED:
+                option, values = REPEATED[name]({} if value is None else value)
+                words += [word for each in values for word in (option, each)]
+            elif (word := bare(() if value is None else value, ",")) or isinstance(value, str):
+                words += [f"--{name}", word]
+            "".join(words).encode()
+    return words
+
+
+def pairs(table: Mapping[str, Any], between: str = "") -> list[str]:
+    return [f"{key}={bare(value, between)}" for key, value in table.items()]
 
 
 def compute(command, ending, scene, set, options, *, output: str | os.PathLike | None = None, force: bool = False,
@@ -122,26 +136,19 @@ def compute(command, ending, scene, set, options, *, output: str | os.PathLike |
                     f"set={{'law.restitution': 0.9}} for instance; help(cradle.{command}) has the arguments", BAD_INPUT)
     with scene_file(scene) as (path, name):
         output = path_of(output, "output") if output is not None else name + ending
-        words = [command, path, *map(str, options), "-o", output, *option("--seed", seed), *settings(set)]
-        return called(words + ["--force"] * force, output, threads, progress)
+        words = [command, path, "-o", output, *words_of(**options, seed=seed, set=set, force=force)]
+        return called(words, output, threads, progress)
 
 
-def assignments(set: Settings, table: str = "") -> list[str]:
+def assignments(set: Mapping[str, Any], table: str = "") -> list[str]:
     """The arguments of --set. The keys of a nested table are set one by one; a table under a dotted key replaces it."""
     found = []
-    if not isinstance(set, Mapping) and set is not None:
-        raise Error(f"set: not keys and values (found {set!r}): give a dict, {{'run.until': 5}} for instance",
-                    BAD_INPUT)
-    for key, value in (set or {}).items():
+    for key, value in set.items():
         if isinstance(value, Mapping) and "." not in key:
             found += assignments(value, f"{table}{key}.")
         else:
             found.append(f"{table}{key}={'' if value is None else bare(value)}")
     return found
-
-
-def settings(set: Settings) -> list[str]:
-    return repeated("--set", assignments(set))
 
 
 def called(words: list[str], output: str, threads: int | None, progress: bool | Show | None) -> Result:
@@ -153,7 +160,7 @@ def called(words: list[str], output: str, threads: int | None, progress: bool | 
         warnings.warn(in_python(messages.strip()), RuntimeWarning, stacklevel=level + 2)
 
     with program.shown(progress) as show:
-        done = program.call(words + option("--threads", threads), (DONE, COLLAPSE, LOST), show, warn)
+        done = program.call(words + words_of(threads=threads), (DONE, COLLAPSE, LOST), show, warn)
     said = in_python(done.stderr.strip().removeprefix("cradle: ") or done.stdout.strip())
     try:
         result = open(output)
@@ -188,16 +195,17 @@ def source_of(scene) -> tuple[str, str]:
     """A scene's file, its name if bundled, or its text, which has line breaks; and what to call it. Raises Error."""
     if isinstance(scene, Result):
         return scene.scene_text, str(scene.attributes.get("name", "scene"))
-    if isinstance(scene, (str, os.PathLike)):
-        return path_of(scene, "scene"), "scene"
-    if isinstance(scene, Mapping):
-        return scene_text(scene), "scene"
-    raise Error(f"not a scene (found {scene!r}): give a file, the name of a bundled scene, a text with line breaks, "
-                "nested dicts or a result", BAD_INPUT)
+    with argument("scene", scene, "a scene",
+                  "give a file, the name of a bundled scene, a text with line breaks, nested dicts or a result"):
+        text = scene_text(scene) if isinstance(scene, Mapping) else os.fspath(scene)
+        if "\n" not in text:
+            return path_of(text, "scene"), "scene"
+        text.encode()
+        return text, "scene"
 
 
 def bare(value: Any, between: str = "") -> str:
-    """A value as in --set, with texts unquoted; for --vary the values of a list are separated by commas (`between`)."""
+    """A value as in --set, with texts unquoted; in options the values of a list are separated by `between`."""
     if isinstance(value, str):
         return value
-    return between.join(map(bare, value)) if between else value_text(value)
+    return between.join(map(bare, value)) if between and isinstance(value, Iterable) else value_text(value)

@@ -7,11 +7,10 @@ import importlib.machinery
 import importlib.util
 import os
 import sys
-from numbers import Integral
 from types import ModuleType
 
 from . import __version__, program
-from .errors import BAD_FILE, BAD_INPUT, Error
+from .errors import BAD_FILE, Error, argument
 
 MODULE = f"{__package__}._live"
 MOST_THREADS = 4096
@@ -51,7 +50,6 @@ def module() -> ModuleType:
 def threads_of(threads: int | None) -> int:
     if threads is None:
         return 0
-    if not isinstance(threads, Integral) or not 0 <= threads <= MOST_THREADS:
-        raise Error(f"threads: not a number of threads (found {threads!r}): give a whole number up to "
-                    f"{MOST_THREADS}, 0 or None for all processors", BAD_INPUT)
-    return int(threads)
+    with argument("threads", threads, "a number of threads",
+                  f"give a whole number up to {MOST_THREADS}, 0 or None for all processors"):
+        return range(MOST_THREADS + 1).index(threads)

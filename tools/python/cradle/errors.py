@@ -1,10 +1,13 @@
 """The exception for all errors, and the meanings of the program's exit statuses."""
 from __future__ import annotations
 
+import contextlib
 import importlib
 import os
 import re
+import reprlib
 import sys
+from collections.abc import Iterator
 from typing import Any
 
 DONE, DIFFERS, BAD_INPUT, COLLAPSE, BAD_FILE, LOST = 0, 1, 2, 3, 4, 5
@@ -24,18 +27,38 @@ class Error(Exception):
         self.message, self.status, self.result = message, status, result
 
 
+def shown(value) -> str:
+    """A value of the caller's for a message: some are long, and some cannot say what they are."""
+    try:
+        return reprlib.repr(value)
+    except Exception:
+        return f"a value of type {type(value).__name__}"
+
+
+@contextlib.contextmanager
+def argument(name: str, value, wanted: str, advice: str) -> Iterator[None]:
+    """Turns exceptions of a block that makes words or numbers of an argument into an Error that names it."""
+    try:
+        yield
+    except (ArithmeticError, AttributeError, RecursionError, TypeError, ValueError):
+        raise Error(f"{name}: not {wanted} (found {shown(value)}): {advice}", BAD_INPUT) from None
+
+
 def path_of(value, what: str) -> str:
-    """A path as text. Raises Error for what is none."""
-    if isinstance(value, (str, os.PathLike)) and isinstance(path := os.fspath(value), str):
+    """A path, or that of an opened result, as text. Raises Error for what is none."""
+    with argument(what, value, "a path", "give a text or a pathlib.Path"):
+        path = os.fspath(getattr(value, "path", value))
+        if isinstance(path, bytes) or b"\0" in os.fsencode(path):
+            raise ValueError
         return path
-    raise Error(f"{what}: not a path (found {value!r}): give a text or a pathlib.Path", BAD_INPUT)
 
 
 def callable_of(function, what: str):
     """Raises Error for what cannot be called."""
-    if not callable(function):
-        raise Error(f"{what}: not a function (found {function!r}): give one, or anything that can be called", BAD_INPUT)
-    return function
+    with argument(what, function, "a function", "give one, or anything that can be called"):
+        if not callable(function):
+            raise TypeError
+        return function
 
 
 def in_python(message: str) -> str:

@@ -11,7 +11,7 @@ from .errors import BAD_FILE, BAD_INPUT, Error
 
 def made_from(command: str, path: str) -> str:
     """The mark in what `cradle plot` and `cradle report` make of a result."""
-    return f"[cradle {command} {quote(os.path.basename(path.removesuffix('.part')))}]"
+    return f"[cradle {command} {quote(os.fsencode(os.path.basename(path.removesuffix('.part'))))}]"
 
 
 def check_replaced(path: str, mark: str) -> None:
@@ -33,7 +33,9 @@ def whole(path: str) -> Iterator[str]:
         yield part
         os.replace(part, path)
     except OSError as error:
-        raise Error(f"{path} cannot be written ({error.strerror or error}): choose another place with -o",
+        folder = os.path.dirname(path) or "."
+        found = error.strerror or error if os.path.isdir(folder) else f"no folder {folder}"
+        raise Error(f"{path}: cannot be written (found {found}): give a place in a folder that can be written to",
                     BAD_FILE) from None
     finally:
         if os.path.exists(part):

@@ -157,8 +157,9 @@ def save(result: Result | str | os.PathLike, output: str | os.PathLike, theory: 
     for path, draw in zip(paths, found.values()):
         write_file(draw(), path, mark)
     if not paths:
-        raise Error(f"{opened.path} holds nothing to draw (no series, snapshots or profiles): "
-                    "give the file of a completed run", BAD_FILE)
+        raise Error(f"{opened.path}: nothing to draw (found no two times, points or particles that make a picture): "
+                    + ("wait until the run has recorded more" if opened.in_progress else
+                       "give a result with a later run.until, or a sweep of more points"), BAD_INPUT)
     return paths
 
 
@@ -169,7 +170,7 @@ class Pictures(ModuleType):
                  theory: bool = True) -> Figure:
         """The main picture of a result, or the one of this name; see the module. Returns the matplotlib figure."""
         found = drawings(result, theory)
-        name = name or next(iter(found), "main")
+        name = str(name or next(iter(found), "main"))
         if name not in found:
             raise Error(f"no {name} picture of this result (found {', '.join(found) or 'none'}): "
                         "choose one of these, or the file of another run", BAD_INPUT)

@@ -12,8 +12,8 @@ import h5py
 import numpy as np
 
 from . import program
-from .commands import Scene, Settings, option, scene_file, settings
-from .errors import DIFFERS, DONE
+from .commands import Scene, Settings, scene_file, words_of
+from .errors import DIFFERS, DONE, path_of
 from .result import Result
 from .scene import parse_toml
 from .tables import Table
@@ -41,7 +41,7 @@ def new(path: str | os.PathLike = "shock.toml", scene: Scene | None = None) -> s
 
     scene: whose values it has, as in run(); by default a small shock. Raises Error if the file exists.
     """
-    path = os.fspath(path)
+    path = path_of(path, "new")
     if scene is None:
         program.call(["new", path])
     else:
@@ -83,7 +83,7 @@ def check(scene: Scene, set: Settings = None, *, seed: int | None = None) -> Che
     Raises Error, as run() would, for whatever is wrong with it.
     """
     with scene_file(scene) as (path, _):
-        return Check(program.call(["check", path, *settings(set), *option("--seed", seed)]).stdout)
+        return Check(program.call(["check", path, *words_of(set=set, seed=seed)]).stdout)
 
 
 def theory(scene: Scene, set: Settings = None, *, seed: int | None = None) -> Table:
@@ -93,7 +93,7 @@ def theory(scene: Scene, set: Settings = None, *, seed: int | None = None) -> Ta
     corrected), "discrete" (the exact recursion) or "printed" (with the misprint). No rows: nothing is predicted.
     """
     with scene_file(scene) as (path, name):
-        out = program.call(["theory", path, "--csv", *settings(set), *option("--seed", seed)]).stdout
+        out = program.call(["theory", path, "--csv", *words_of(set=set, seed=seed)]).stdout
     rows = list(csv.DictReader(io.StringIO(out)))
     memory = h5py.File(f"theory of {name}", "w", driver="core", backing_store=False, track_order=True)
     for column in ("quantity", "equation", "form"):
@@ -128,7 +128,7 @@ def diff(first: File, second: File, rtol: float = 0) -> Differences:
 
     rtol: numbers a and b with |a - b| <= rtol max(|a|, |b|) are the same.
     """
-    words = ["diff", path_of(first), path_of(second), "--all", "--rtol", repr(float(rtol))]
+    words = ["diff", path_of(first, "diff"), path_of(second, "diff"), "--all", *words_of(rtol=rtol)]
     return Differences(program.call(words, (DONE, DIFFERS)).stdout)
 
 
@@ -137,9 +137,5 @@ def export(result: File, folder: str | os.PathLike, force: bool = False) -> list
 
     force: True replaces what the folder holds, also what was exported from another result.
     """
-    words = ["export", path_of(result), "--to", os.fspath(folder), *["--force"] * force]
+    words = ["export", path_of(result, "export"), "--to", path_of(folder, "folder"), *words_of(force=force)]
     return program.call(words).stdout.splitlines()
-
-
-def path_of(result: File) -> str:
-    return result.path if isinstance(result, Result) else os.fspath(result)

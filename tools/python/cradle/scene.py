@@ -31,12 +31,12 @@ def parse_toml(text: str) -> dict[str, Any]:
 
 def value_text(value: Any) -> str:
     """A value as TOML: numbers with all digits (a Decimal too, not a Fraction), texts quoted, lists in brackets."""
+    if hasattr(value, "tolist"):  # numpy's
+        value = value.tolist()
     if isinstance(value, (bool, str)):
         return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")  # written as in TOML
     if isinstance(value, Mapping):
         return "{ " + ", ".join(f"{key} = {value_text(inner)}" for key, inner in given(value)) + " }"
-    if hasattr(value, "tolist"):  # numpy's
-        value = value.tolist()
     if isinstance(value, (list, tuple)):
         return "[" + ", ".join(value_text(inner) for inner in value) + "]"
     return str(value)

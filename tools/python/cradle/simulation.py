@@ -11,11 +11,11 @@ from collections.abc import Callable
 from numbers import Integral
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from .commands import Scene, Settings, assignments, source_of
+from .commands import Scene, Settings, source_of, words_of
 from .compiled import module, threads_of
-from .errors import BAD_INPUT, Error, callable_of, imported, path_of
+from .errors import BAD_INPUT, Error, callable_of, imported, path_of, shown
 from .result import Result, open
-from .scene import parse_toml
+from .scene import parse_toml, value_text
 from .timer import EXACT, Time, Timer, decimal_of
 
 if TYPE_CHECKING:
@@ -100,10 +100,11 @@ class Simulation:
     def __init__(self, scene: Scene, set: Settings = None, *, seed: int | None = None, threads: int | None = None,
                  restitution: Callable[[float], float] | None = None):
         source, name = source_of(scene)
-        settings = assignments(set) + ([] if seed is None else [f"initial.seed={seed}"])
+        settings = words_of(set=set)[1::2] + [f"initial.seed={value_text(word)}" for word in words_of(seed=seed)[1:]]
         if restitution is not None:
             callable_of(restitution, "restitution")
-        held = module().Run(source, "\n" in source, name, settings, threads_of(threads), restitution is not None)
+        held = module().Run(os.fsencode(source), "\n" in source, name, settings, threads_of(threads),
+                            restitution is not None)
         self._begin(held, restitution)
 
     def _begin(self, run, restitution=None) -> None:
@@ -126,7 +127,8 @@ class Simulation:
     def step(self, n: int = 1) -> None:
         """Makes the next n collisions, or all until run.until if these are fewer; the state is that after the last."""
         if not isinstance(n, Integral) or n < 0:
-            raise Error(f"step: not a number of collisions (found {n!r}): give a whole number from 0 on", BAD_INPUT)
+            raise Error(f"step: not a number of collisions (found {shown(n)}): give a whole number from 0 on",
+                        BAD_INPUT)
         self._compute(decimal_of(self._run.until), min(int(n), MOST_COLLISIONS))
 
     def stop(self) -> None:
@@ -263,22 +265,29 @@ class Simulation:
             the same run would not make again. Raises Error before the end, which is run.until, a collapse or stop().
         """
         output = self.name + ".h5" if output is None else path_of(output, "write")
-        self._run.write(output, force)
+        self._run.write(os.fsencode(output), words_of(force=force) != [])
         result = open(output)
         _, result.status, report, warning = self._run.over
         result.text = report + warning
         return result
 
-    def save(self, path: str | os.PathLike) -> None:
-        """Saves a checkpoint, from which load() continues with the same bits. Raises Error if the run is over."""
-        self._run.save(path_of(path, "save"))
+    def save(self, path: str | os.PathLike, *, force: bool = False) -> None:
+        """Saves a checkpoint, from which load() continues with the same bits. Raises Error if the run is over.
+
+        It replaces a checkpoint, and with force whatever else is there, a result for instance.
+        """
+        self._run.save(os.fsencode(path_of(path, "save")), words_of(force=force) != [])
 
     @classmethod
     def load(cls, path: str | os.PathLike, *, threads: int | None = None) -> Simulation:
         """A simulation at the place where save() was called; the file stays. Raises Error."""
         loaded = cls.__new__(cls)
-        loaded._begin(module().Run(path_of(path, "load"), threads_of(threads)))
+        loaded._begin(module().Run(os.fsencode(path_of(path, "load")), threads_of(threads)))
         return loaded
+
+    def __reduce_ex__(self, protocol):  # for copy.copy() and copy.deepcopy() too
+        raise Error(f"{self.name}: a simulation cannot be copied or pickled (found one at t = {self.time:g}): save it "
+                    "with save(), and load() the file as often as you need it", BAD_INPUT)
 
     # ---- shown
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import h5py
 import numpy as np
 
-from .errors import BAD_FILE, BAD_INPUT, Error, imported
+from .errors import BAD_FILE, BAD_INPUT, Error, argument, imported
 
 if TYPE_CHECKING:
     import pandas
@@ -259,7 +259,9 @@ class Tables(Sequence):
         if not len(self):
             raise Error(f"{self._place} is empty: the scene does not request it "
                         "(see output.* of `cradle scenes --keys`)", BAD_INPUT)
-        nearest = int(np.nanargmin(np.abs(self.times - time)))
+        with argument("at", time, "a time", "give a number"):
+            time = float(time)
+            nearest = int(np.nanargmin(np.abs(self.times - time)))
         found = float(self.times[nearest])
         if method is None and abs(found - time) > 1e-12 * max(abs(found), abs(time)):
             raise Error(f"{self._place}: none at t = {time:g} (the nearest is at t = {found:.15g}): give one of its "

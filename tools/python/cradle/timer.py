@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Union
 
-from .errors import BAD_INPUT, Error
+from .errors import argument
 
 if TYPE_CHECKING:
     from .simulation import Simulation
@@ -28,10 +28,8 @@ class Timer:
 
 
 def decimal_of(value: Time) -> decimal.Decimal:
-    try:
+    with argument("time", value, "a time", "give a number"):
         number = decimal.Decimal(str(value))
-    except decimal.InvalidOperation:
-        number = decimal.Decimal("nan")
-    if not number.is_finite():
-        raise Error(f"not a time (found {value}): give a number", BAD_INPUT)
-    return number
+        if not number.is_finite():
+            raise ValueError
+        return number

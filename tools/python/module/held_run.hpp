@@ -155,11 +155,12 @@ class HeldRun {
     return f(*run_);
   }
 
-  /// Writes a file from which a run can continue. Throws Error, also if the run is over.
-  void save(const std::string& path) {
+  /// Writes a file from which a run can continue. It replaces only another one. Throws Error, also if the run is over.
+  void save(const std::string& path, bool force) {
     const Use use(*this);
     require_own_law("saved");
     const FileClaim claim(path);
+    check_overwrite(path, force ? Force::yes : Force::no);
     StateWriter to(
         path, {{kind, 0, effective_toml(scene_), scene_.name}, 0, 0, 0, run_->time().value, run_->counts().collisions});
     run_->put_rows();

@@ -5,7 +5,7 @@ exact for t -> infinity in the sticky gas (Burgers equation with white noise); H
 import numpy as np
 
 from .settings import mass_of, since_label, since_start, start_of
-from .style import BLUE, GREEN, GREY, ORANGE, RED, note, power, thinned
+from .style import BLUE, GREEN, GREY, ORANGE, RED, logarithmic, note, power, thinned
 
 ENERGY, CLUSTERS = 0.221376226650747359, 1.32825735990448415
 FEWEST = 10   # clusters that are left, for the law of infinitely many particles to say something of these
@@ -67,7 +67,8 @@ def draw_cooling(result, theory, panels):
     axes = panels.stacked(r"energy per particle $E\,/\,N$", *["simulation / sticky law"] * applies,
                           *["clusters per particle"] * merging, height=2.2,
                           x=since_label(result) + rf"   ($\tau=st/a$, $s={speed:.4g}$, $a={spacing:.4g}$)")
-    axes[0].loglog(time, energy, color=BLUE, lw=1.6, label="simulation")
+    axes[0].plot(time, energy, color=BLUE, lw=1.6, label="simulation")
+    logarithmic(axes[0])
     if applies:
         mass = "" if mass_of(result) == 1 else r"m\,"
         axes[0].plot(time, law, "k--", label=rf"sticky gas, $0.2214\,{mass}s^2\tau^{{-2/3}}$")
@@ -80,7 +81,8 @@ def draw_cooling(result, theory, panels):
     draw_laws(axes[0], theory, start_of(result), time, energy, particles)
     axes[0].legend(loc="lower left")
     if merging:
-        axes[-1].loglog(time, 1 - series["merges"][later] / particles, color=BLUE, lw=1.6, label="simulation")
+        axes[-1].plot(time, 1 - series["merges"][later] / particles, color=BLUE, lw=1.6, label="simulation")
+        logarithmic(axes[-1])
         if applies:
             clusters = CLUSTERS / ENERGY * law / (mass_of(result) * speed ** 2)
             axes[-1].plot(time, clusters, "k--", label=r"sticky gas, $1.328\,\tau^{-2/3}$")

@@ -5,7 +5,7 @@ from ..result import fronts
 from .energy import cooled, cools, draw_laws, ring_of
 from .settings import since_label, since_start, start_of
 from .shock import draw_slope
-from .style import BLUE, GREY, ORANGE, beside, note, shaded, thinned
+from .style import BLUE, GREY, ORANGE, beside, logarithmic, note, shaded, thinned
 
 SERIES = (("energy", "energy"), ("collisions", "collisions"), ("merges", "merges"), ("front_right", "right front"),
           ("cloud_width", "width of the cloud"))
@@ -36,7 +36,8 @@ def draw_series(result, theory, units, panels):
         time = since_start(result, time)
     scale = {"energy": units.energy, "front_right": units.x, "cloud_width": units.x}
     shown = [(name, label) for name, label in SERIES if name in result.series
-             and (name != "front_right" or name in fronts(result)) and (result.series[name]["max"] > 0).any()]
+             and (name != "front_right" or name in fronts(result))
+             and (name == "energy" or (result.series[name]["max"] > 0).any())]
     spreads = {name: of for name, of in result.table("ensemble/spread/series").items()
                if np.ndim(of.get("quantile_50", np.zeros((0, 2)))) == 1}
     shown += [(name, name.replace("_", " ")) for name in spreads if name not in dict(shown)]
@@ -88,7 +89,7 @@ def show_cooling(axes, result, theory, time):
     if np.isfinite(law).any():
         axes[0].plot(time[later], law, "k--", lw=1, label="sticky gas")
     draw_laws(axes[0], theory, start_of(result), time[later], result.series["energy"]["mean"][later])
-    axes[0].set_yscale("log")
+    logarithmic(axes[0])
     axes[-1].set(xscale="log", xlim=(time[later][0], time[-1]))
 
 

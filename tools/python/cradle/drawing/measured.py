@@ -34,7 +34,7 @@ def pictures(result, _theory, _units):
     names = [name for name in HISTOGRAMS if name in result.histograms and counted(result.histograms[name])[1].any()]
     if names:
         yield "histograms", draw_histograms, result, names
-    if "lag" in result.correlations:
+    if "lag" in result.correlations and (np.asarray(with_error(result.correlations, "msd")[0]) > 0).any():
         yield "correlations", draw_correlations, result
     for name, group, *labels in PLACES:
         if result.sweep and any(len(getattr(p, group)) for p in result.points):

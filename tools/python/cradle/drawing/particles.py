@@ -3,7 +3,7 @@ against the time that is left to it, in which everything is a power. Those that 
 and time, wider for heavier ones, and Newton's cradle: the paths of the single particles in the clusters."""
 import numpy as np
 
-from .style import BLUE, GREY, ORANGE, RED, beside, shaded, shades
+from .style import BLUE, GREY, ORANGE, RED, beside, ends, shaded, shades
 
 FEW_PARTICLES = 20       # up to here every particle has a path of its own
 MARKED = 40              # points of a line; marks of more would cover it
@@ -155,7 +155,7 @@ def draw_paths(ax, result, units, heaviest):
     if meetings:
         ax.plot(*np.array(meetings).T, "o", ms=9, mfc="none", color=RED, mew=1.2, label="collision", zorder=5)
     ax.set(xlabel=units.position_label(), ylabel=units.time_label(),
-           ylim=(result.snapshots[0]["time"] / units.t, result.snapshots[-1]["time"] / units.t))
+           ylim=ends(result.snapshots.times / units.t))
     beside(ax)
 
 
@@ -194,5 +194,5 @@ def draw_energy_steps(ax, result, units):
     ax.plot(time, result.means["energy"] / units.energy, color=BLUE, drawstyle="steps-post")
     for t in result.events.get("time", ()):
         ax.axvline(t / units.t, color=GREY, lw=0.8, ls=":", zorder=0)
-    ax.set(xlabel=units.time_label(), ylabel=units.energy_label(), xlim=(time[0], time[-1]))
+    ax.set(xlabel=units.time_label(), ylabel=units.energy_label(), xlim=ends(time))
     ax.set_ylim(0, 1.1 * (result.means["energy"].max() / units.energy or 1))

@@ -7,6 +7,7 @@ import re
 import textwrap
 
 import matplotlib.pyplot as plt
+from matplotlib.font_manager import findfont, get_font
 from matplotlib.text import Text
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
 
@@ -14,7 +15,7 @@ from ..errors import BAD_FILE, Error
 from ..files import whole
 from . import (beyond, clusters, cold, energy, ensemble, measured, particles, proof, scenarios, shock, sticky, sweep,
                walls)
-from .style import Panels, Units, style
+from .style import FONT, Panels, Units, style
 from .theory import Theory
 
 # The first of these that has something to show is all there is.
@@ -25,7 +26,7 @@ TOGETHER = (beyond.pictures, sticky.pictures, energy.cooling, clusters.pictures,
 LAST = (measured.pictures, proof.certificates)  # behind the others
 PAPER = "Equations and sections: Zaburdaev and Herminghaus, Phys. Rev. E 75, 031304 (2007)"
 CITED = re.compile(r"Eqs?\. \(|\(1?\d\)(,|$)|^section [IV]")
-WIDE = 12  # characters of a title per inch
+WIDE, LINES = 12, 3  # characters of a title per inch, and its lines
 
 
 def pictures_of(result, theory, units):
@@ -61,7 +62,9 @@ def finish(figure, title):
         for axis in (axes.xaxis, axes.yaxis):
             label_ticks(axis)
     own = getattr(figure, "_suptitle", None)
-    lines = textwrap.wrap(title.replace("$", r"\$"), int(WIDE * figure.get_figwidth()))
+    lines = textwrap.wrap(title, int(WIDE * figure.get_figwidth()), max_lines=LINES, placeholder=" ...")
+    known = get_font(findfont(FONT)).get_char_index
+    lines = ["".join(c if known(ord(c)) else "\ufffd" for c in line).replace("$", r"\$") for line in lines]
     if own is not None:
         lines.append(own.get_text())
     if lines:

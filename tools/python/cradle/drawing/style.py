@@ -18,8 +18,9 @@ LIGHT = {BLUE: "#0072b2", ORANGE: "#e69f00", GREEN: "#009e73", RED: "#d55e00", P
 DARK = {BLUE: "#58b1ee", ORANGE: "#f2b33d", GREEN: "#45cfa2", RED: "#f58a52", PURPLE: "#e59ac6", SKY: "#a3dcff",
         "k": INK, "black": INK, "w": PAPER, "white": PAPER}
 
+FONT = "DejaVu Sans"
 SETTINGS = {
-    "font.family": "DejaVu Sans", "font.size": 9, "axes.labelsize": 9, "legend.fontsize": 7.5,
+    "font.family": FONT, "font.size": 9, "axes.labelsize": 9, "legend.fontsize": 7.5,
     "axes.linewidth": 0.7, "xtick.direction": "in", "ytick.direction": "in", "xtick.top": True, "ytick.right": True,
     "legend.frameon": True, "legend.framealpha": 0.85, "legend.edgecolor": "none", "lines.linewidth": 1.2,
     "axes.prop_cycle": plt.cycler(color=[BLUE, ORANGE, GREEN, RED, PURPLE, SKY, "k"]), "figure.dpi": 100,
@@ -150,6 +151,19 @@ def times_of(groups, units):
     """The shades and the names of the times of snapshots or profiles, by time and in its order."""
     times = sorted({group["time"] for group in groups})
     return dict(shaded(times)), {time: units.at(time) for time in times}
+
+
+def logarithmic(*axes):
+    """Makes those axes of panels logarithmic that have positive values: others cannot be."""
+    for ax in axes:
+        for name, axis in (("x", ax.xaxis), ("y", ax.yaxis)):
+            if np.isfinite(axis.get_minpos()):
+                ax.set(**{name + "scale": "log"})
+
+
+def ends(values):
+    """The first and the last value, as limits of an axis; none if they are one."""
+    return (values[0], values[-1]) if values[0] < values[-1] else (None, None)
 
 
 def note(ax, text):

@@ -6,7 +6,7 @@ from . import beyond
 from .clusters import model_width
 from .energy import cooled, sticky_law
 from .settings import since_label, since_start
-from .style import BLUE, GREY, ORANGE, distinct, note, plt, shades
+from .style import BLUE, GREY, ORANGE, distinct, logarithmic, note, plt, shades
 
 SPEED, LOSS = "initial.speed", "law.loss"
 BESIDE = ("_error", "_replicas")  # what goes with a number of the summary
@@ -86,12 +86,13 @@ def draw_cooling(result, panels):
     for point, colour, label in zip(shown, [*shades(len(others)), "k"], labels):
         _, at, energy, law = cooled(point)
         line = "--" if point.law == "inelastic" else "-"
-        top.loglog(at, energy, line, color=colour, label=label, zorder=3 if point is reference else 2)
+        top.plot(at, energy, line, color=colour, label=label, zorder=3 if point is reference else 2)
         if reference is not None:
             _, seen, known, _ = cooled(reference)
             law = np.exp(np.interp(np.log(at), np.log(seen), np.log(known), left=np.nan, right=np.nan))
         for ax in below:
-            ax.loglog(at, energy / law, line, color=colour)
+            ax.plot(at, energy / law, line, color=colour)
+    logarithmic(top, *below)
     if applies:
         top.plot(time, asymptotic, ":", color="k", lw=1.4, label=r"$0.2214\,s^2(st/a)^{-2/3}$")
     for ax in below:

@@ -13,7 +13,7 @@ import re
 from .. import microscope as canvas
 from .. import program
 from ..commands import scene_file
-from ..errors import Error
+from ..errors import Error, path_of
 from ..files import check_replaced, made_from, whole
 from ..opening import read_seal
 from ..plot import PICTURES, drawings
@@ -41,7 +41,7 @@ def report(result: Result | str | os.PathLike, output: str | os.PathLike | None 
     Raises Error if the result cannot be read or the page cannot be written.
     """
     opened = result if isinstance(result, Result) else open_result(result)
-    output = os.fspath(output or os.path.splitext(opened.path.removesuffix(".part"))[0] + ".html")
+    output = path_of(output or os.path.splitext(opened.path.removesuffix(".part"))[0] + ".html", "output")
     if not force:
         check_replaced(output, made_from("report", opened.path))
     content = page(opened)

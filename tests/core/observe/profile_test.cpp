@@ -3,6 +3,7 @@
 // to all digits, also where it is small against the velocity squared.
 #include <gtest/gtest.h>
 
+#include "cradle/core/chains/cluster_chain.hpp"
 #include "cradle/core/observe/profile.hpp"
 #include "cradle/core/observe/zone.hpp"
 #include "cradle/tests/core/between_walls.hpp"

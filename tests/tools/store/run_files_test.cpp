@@ -152,7 +152,7 @@ TEST_F(Files, CheckpointsTakeATenthOfTheTimeAtMost) {
   const auto begin = std::chrono::steady_clock::now();
   for (int k = 0; k < 50; ++k)
     files.keep(
-        {}, [&](StateSink&) { ++saved, std::this_thread::sleep_for(taken); }, RunIs::in_progress);
+        {}, [&](cradle::StateSink&) { ++saved, std::this_thread::sleep_for(taken); }, RunIs::in_progress);
   EXPECT_GE(saved, 1);
   EXPECT_LE(10 * (saved - 1) * taken, std::chrono::steady_clock::now() - begin);
 }

@@ -44,20 +44,23 @@ int finish(Exit status) {
 
 int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // a write beyond `ulimit -f` then fails, as on a full disk
+  static Interrupt unheeded;
+  note_signals(unheeded);
   try {
     CommandLine program(
         "cradle", "One-dimensional granular gases, event by event: dry, wet and sticky, in any precision.",
         build_description(),
         "cradle run fig2 -o fig2.h5, then cradle plot fig2.h5; cradle run --help lists what else `run` takes",
         "Exit status: 0 done, 1 a comparison differs, 2 bad input, 3 inelastic collapse, 4 file not read or written,\n"
-        "5 resolution or order lost, 6 processor too old for this build, 130/143 interrupted.");
+        "5 resolution or order lost, 6 processor too old for this build, 130/143 interrupted, 141 output closed.");
     program.begin_with(first_steps);
     for (AddCommand* const add : all_commands) add(program);
     return finish(program.read(argc, argv)());
   } catch (const Error& error) {
     return fail(error.what(), error.status);
   } catch (const std::system_error& error) {  // mostly from output
-    return fail(fmt::format("{}: check where the output goes", error.what()), Exit::io);
+    return std::ferror(stdout) != 0 ? finish(Exit::done)
+                                    : fail(fmt::format("{}: check where the output goes", error.what()), Exit::io);
   } catch (const std::length_error&) {
     return fail("out of memory: see what `cradle check SCENE` expects", Exit::bad_input);
   } catch (const std::bad_alloc&) {

@@ -2,6 +2,7 @@
 
 #include "cradle/core/ensemble/executor.hpp"
 #include "cradle/tools/commands/commands.hpp"
+#include "cradle/tools/engines/any_engine.hpp"
 #include "cradle/tools/run/run.hpp"
 #include "cradle/tools/setup/list_file.hpp"
 #include "cradle/tools/theory/cost.hpp"
@@ -21,6 +22,7 @@ Exit check(const CommonOptions& options) {
   check_particles(scene);
 
   const Cost cost = expected_cost(scene);
+  if (cost.memory < 1e8) begin_engine(scene, {});  // refuses what a run does
   fmt::print("\nparticles in the active zone at the end: {} at most\n", about(cost.particles, 3));
   fmt::print("{}", expected_lines(scene, cost));
   if (cost.collisions)

@@ -56,13 +56,14 @@ Exit manual(const CommandLine& program) {
     const std::string with = field.when->text.empty() ? "" : fmt::format("; with {}", field.when->text);
     fmt::print("{}", entry(field.key, fmt::format("{} ({}{})", field.doc, facts(field), with)));
   }
-  fmt::print(".SH EXIT STATUS\n{}{}{}{}{}{}{}{}", entry("0", "done"), entry("1", "a comparison differs"),
+  fmt::print(".SH EXIT STATUS\n{}{}{}{}{}{}{}{}{}", entry("0", "done"), entry("1", "a comparison differs"),
              entry("2", "bad input, the command line included"),
              entry("3", "stopped at inelastic collapse (policy stop)"),
              entry("4", "a file could not be read or written"),
              entry("5", "resolution or order of collisions lost, a replica failed, or a proof is undecided"),
              entry("6", "the processor lacks AVX2, BMI2 or FMA, for which the program was built"),
-             entry("130, 143", "interrupted by SIGINT; by SIGTERM, SIGUSR1 or SIGHUP"));
+             entry("130, 143", "interrupted by SIGINT; by SIGTERM, SIGUSR1 or SIGHUP"),
+             entry("141", "the program that read its output has ended (SIGPIPE, as the shell shows it)"));
   fmt::print(".SH ENVIRONMENT\n{}{}", entry("CRADLE_PYTHON", "the Python that makes pictures and reports"),
              entry("TMPDIR", "the folder for temporary files"));
   fmt::print(".SH FILES\n{}{}",

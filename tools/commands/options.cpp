@@ -81,7 +81,7 @@ Command::Command(CLI::App& command, Action& chosen, const std::string& ending)
 }
 
 void Command::argument(const std::string& name, std::string& value, const std::string& help, Needed needed) {
-  command_.add_option(name, value, help)->required(needed == Needed::yes)->type_name("");
+  command_.add_option(name, value, help)->required(needed == Needed::yes)->type_name("")->check(not_empty());
 }
 
 void Command::arguments(const std::string& name, std::vector<std::string>& values, const std::string& help,

@@ -214,20 +214,9 @@ template <Real T> void require_masses_that_fall(const Scene& scene, const cradle
               "give run.coordinates = \"absolute\" or run.precision = \"double-double\"");
 }
 
-/// Throws Error for a run so short, at times so large, that it ends at its start.
-template <Real T> void require_resolved(const Scene& scene) {
-  const T start = number<T>(scene.run.start), until = number<T>(scene.run.until);
-  if (!(scene.run.start < scene.run.until) || start < until) return;
-  throw Error(scene.place("run.until"), "too close to run.start for this precision",
-              fmt::format("{} after {}, which are the same in {}", scene.run.until.text, scene.run.start.text,
-                          precision_name(scene.run)),
-              "count times from 0 (run.start = 0), or give more digits (run.precision)");
-}
-
 template <Real T>
 std::unique_ptr<Engine<T>> engine_of(const Scene& scene, const std::shared_ptr<const cradle::Particles<T>>& particles,
                                      const Policy<T>& policy, const Workers& workers, bool observed) {
-  require_resolved<T>(scene);
   const T start = number<T>(scene.run.start);
   if (!law_row(scene).needs_events && !observed)  // without an observer no collisions are needed
     return std::make_unique<EngineOf<T, StickyGas<T>>>(workers, particles, start, policy);

@@ -23,13 +23,13 @@ ScalarChoice scalar_choice(const Run& run) {
   return {std::string(type.name), type.digits == 0 ? static_cast<unsigned>(run.digits) : 0};
 }
 
-// Calls f(std::type_identity<T>) with the scene's scalar type. Throws Error if this build does not have it.
-template <class Result, class F> Result in_precision(const Scene& scene, F f) {
-  const ScalarChoice choice = scalar_choice(scene.run);
+// Calls f(std::type_identity<T>) with the scene's scalar type. Throws Error at this key if this build does not have it,
+// or for what f refuses.
+template <class Result, class F> Result in_precision(const Scene& scene, const char* key, F f) {
   try {
-    return with_scalar<Result>(choice, f);
+    return with_scalar<Result>(scalar_choice(scene.run), f);
   } catch (const std::invalid_argument& error) {
-    throw Error({"", 0, "run.precision"}, "not available", choice.name, error.what());
+    throw Error(scene.place(key).prefix() + error.what());
   }
 }
 
@@ -41,7 +41,7 @@ std::string precision_name(const Run& run) {
 }
 
 void set_digits(const Scene& scene) {
-  in_precision<void>(scene, [](auto) {});
+  in_precision<void>(scene, "run.precision", [](auto) {});
 }
 
 std::unique_ptr<AnyEngine> begin_engine(const Scene& scene, const EngineOptions& options) {
@@ -49,11 +49,13 @@ std::unique_ptr<AnyEngine> begin_engine(const Scene& scene, const EngineOptions&
     throw Error(scene.place("run.precision"), "a restitution that is a function is of type double",
                 precision_name(scene.run), "give run.precision = \"double\"");
   return in_precision<std::unique_ptr<AnyEngine>>(
-      scene, [&]<class T>(std::type_identity<T>) { return begin_engine_in<T>(scene, options); });
+      scene, scene.run.coordinates == Coordinates::absolute ? "run.coordinates" : "initial",
+      [&]<class T>(std::type_identity<T>) { return begin_engine_in<T>(scene, options); });
 }
 
 Rounding rounding(const Scene& scene) {
-  return in_precision<Rounding>(scene, []<class T>(std::type_identity<T>) -> Rounding { return rounded_once<T>; });
+  return in_precision<Rounding>(scene, "run.precision",
+                                []<class T>(std::type_identity<T>) -> Rounding { return rounded_once<T>; });
 }
 
 }  // namespace cradle::tools

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cmath>
-#include <stdexcept>
 
 #include "cradle/core/observe/zone.hpp"
 #include "cradle/core/theory/wet_zone.hpp"
@@ -10,21 +9,12 @@
 
 namespace cradle::tools {
 
-/// Throws Error if the extent of the zone is unknown.
 inline ZoneAverage zone_average(const Scene& scene) {
   const Zone& zone = scene.output.zone;
-  double reach = 0;
-  if (zone.reach)
-    reach = zone.reach->value;
-  else
-    try {
-      const theory::WetShock<double> shock{
-          .loss = scene.law.loss.value, .speed = scene.initial.speed.value, .spacing = scene.initial.spacing.value};
-      reach = 3 * theory::WetZone<double>(shock).half_width();
-    } catch (const std::domain_error& error) {
-      throw Error(scene.place("output.zone.reach"), "not given, and (13) has no answer", error.what(), "give it");
-    }
-  return {reach, zone.bins, zone.samples, 1.0};
+  const theory::WetShock<double> shock{
+      .loss = scene.law.loss.value, .speed = scene.initial.speed.value, .spacing = scene.initial.spacing.value};
+  return {zone.reach ? zone.reach->value : 3 * theory::WetZone<double>(shock).half_width(), zone.bins, zone.samples,
+          1.0};
 }
 
 inline DecimalColumn zone_times(const Scene& scene) {

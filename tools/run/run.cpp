@@ -1,5 +1,8 @@
 #include "cradle/tools/run/run.hpp"
 
+#include <fmt/format.h>
+
+#include "cradle/tools/engines/any_engine.hpp"
 #include "cradle/tools/record/rows.hpp"
 #include "cradle/tools/run/scene_run.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
@@ -35,6 +38,12 @@ void check_built(const Scene& scene) {
     if (scene.initial.on_ring()) not_built("run.coordinates", "absolute on a ring", "gaps");
   }
   set_digits(scene);
+  const Decimal &start = scene.run.start, &until = scene.run.until;
+  const Rounding round = rounding(scene);
+  if (start < until && !(round(start.text) < round(until.text)))  // it would end at its start
+    throw Error(scene.place("run.until"), "too close to run.start for this precision",
+                fmt::format("{} after {}, which are the same in {}", until.text, start.text, precision_name(scene.run)),
+                "count times from 0 (run.start = 0), or give more digits (run.precision)");
 }
 
 Scene without_tables(Scene scene) {

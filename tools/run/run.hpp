@@ -53,7 +53,7 @@ std::vector<Attribute> provenance(const Scene& scene, const std::string& precisi
 /// The scene stored in a result. Throws Error (Exit::io) naming the file.
 Scene scene_in(const std::vector<Attribute>& attributes, const std::string& file);
 
-/// Throws Error, naming the key, for a scene that this build cannot run; sets the digits.
+/// Throws Error, naming the key, for a scene that this build or its precision cannot run; sets the digits.
 void check_built(const Scene& scene);
 
 /// The scene without tables that are only written: it makes the same collisions, and its series is the same.

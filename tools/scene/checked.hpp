@@ -49,6 +49,9 @@ struct Checked {
   }
 };
 
+/// Why the interaction zone of a wet shock has no width; empty: it has one.
+std::string without_zone(const Scene& scene);
+
 /// Throws Error for particles and walls that are not possible.
 void check_state(const Checked& of);
 

@@ -31,10 +31,11 @@ void range_of_bins(const Checked& of, const char* key, const std::vector<Decimal
               fmt::format("give a range of {:g} at most, or more bins", static_cast<double>(most)));
 }
 
-// Random speeds of thermal walls and averages are doubles in every working precision.
+// Random speeds of thermal walls, displacements and averages are doubles in every working precision.
 bool is_double_anyway(std::string_view key) {
-  return key.ends_with(".temperature") || key == "output.zone.reach" || key == "output.counting.range" ||
-         key == "output.structure.length" || key == "output.pair_distribution.distance";
+  return key.ends_with(".temperature") || key.ends_with(".range") || key == "output.zone.reach" ||
+         key == "output.structure.length" || key == "output.pair_distribution.distance" ||
+         key == "initial.perturbation" || key == "initial.density_exponent";
 }
 
 void policy_of_law(const Checked& of) {
@@ -120,16 +121,26 @@ void places_are_on_a_length(const Checked& of) {
 void numbers_fit(const Checked& of) {
   const NumberRange of_type(of.scene.run), of_doubles{Run()};
   for (const Field& field : scene_fields()) {
-    if (!field.when->holds(of.scene)) continue;
+    if (!field.when->holds(of.scene) || !field.recorded) continue;
     const NumberRange& range = is_double_anyway(field.key) ? of_doubles : of_type;
-    for (const Decimal& number : numbers_of(field, of.scene)) {
-      range.check(number.text, of.place(field.key));
-      // A number above 0 in the scene must be above 0 in the run. The particle between the rows may have mass 0.
-      const bool above_zero =
-          field.range.starts_with("(0,") || (field.key == "initial.centre.mass" && number > Decimal("0"));
-      if (above_zero) range.check_positive(number.text, of.place(field.key));
-    }
+    for (const Decimal& number : numbers_of(field, of.scene)) range.check(number.text, of.place(field.key));
   }
+}
+
+// Squares of speeds that underflow belong to pairs that have less energy than this, also in heavy clusters.
+void loss_is_above_rounding(const Checked& of) {
+  const ScalarRow& type = scalar_row(of.scene.run.precision);
+  const Decimal& loss = of.scene.law.loss;
+  if (of.scene.law.type == LawType::wet && !type.least.empty() && loss > Decimal("0") &&
+      precise(loss) < from_text<bin_float>(type.least) * from_text<bin_float>("1e20"))
+    of.refuse("law.loss", "too small for the precision", fmt::format("{} with \"{}\"", loss.text, type.name),
+              "give a larger number, 0 or another run.precision");
+}
+
+void zone_has_a_width(const Checked& of) {
+  if (!of.scene.output.zone.from || of.scene.output.zone.reach) return;
+  if (const std::string without = without_zone(of.scene); !without.empty())
+    of.refuse("output.zone.reach", "missing, and (13) has no answer", of.said("law.loss"), "give it: " + without);
 }
 
 // Called before memory for the samples is allocated.
@@ -168,30 +179,27 @@ void samples_can_be_kept(const Checked& of) {
 void check_scene(const Scene& scene, const Entries& entries, const std::string& scene_file) {
   const Checked of{scene, entries, scene_file};
   check_state(of);
-  for (const auto check :
-       {policy_of_law, series_has_times, ranges_of_bins, averages_have_bins_and_samples, pairs_stay_together,
-        tagged_particles_stay_in_order, places_are_on_a_length, numbers_fit, samples_can_be_kept})
+  for (const auto check : {policy_of_law, series_has_times, ranges_of_bins, averages_have_bins_and_samples,
+                           pairs_stay_together, tagged_particles_stay_in_order, places_are_on_a_length, numbers_fit,
+                           loss_is_above_rounding, zone_has_a_width, samples_can_be_kept})
     check(of);
 }
 
 void NumberRange::check(std::string_view literal, const Place& place) const {
+  if (type_.largest.empty() || (literal.size() < 300 && literal.find_first_of("eE") == literal.npos)) return;
   const auto size = literal.substr(literal.starts_with('-') ? 1 : 0);
-  if (type_.largest.empty() || std::is_lteq(compare_decimals(size, type_.largest))) return;
-  throw Error(place, "too large for the precision", fmt::format("{} with \"{}\"", literal, type_.name),
-              "give a smaller number or another run.precision");
-}
-
-void NumberRange::check_positive(std::string_view literal, const Place& place) const {
-  if (type_.least.empty() || std::is_gteq(compare_decimals(literal, type_.least))) return;
-  throw Error(place, "too small for the precision", fmt::format("{} with \"{}\"", literal, type_.name),
-              "give a larger number or another run.precision");
+  const bool small = std::is_lt(compare_decimals(size, type_.least));
+  if (small ? std::is_eq(compare_decimals(size, "0")) : std::is_lteq(compare_decimals(size, type_.largest))) return;
+  throw Error(place, small ? "too small for the precision" : "too large for the precision",
+              fmt::format("{} with \"{}\"", literal, type_.name),
+              fmt::format("give a {} number or another run.precision", small ? "larger" : "smaller"));
 }
 
 void check_neighbours(const DecimalColumn& x, const DecimalColumn& v, std::size_t right, const NumberRange& range,
                       const Place& place) {
   const std::size_t left = right - 1;
   const auto order = compare_decimals(x[right], x[left]);
-  if (std::is_gt(order)) return range.check_positive(difference(x[right], x[left]), place);
+  if (std::is_gt(order)) return range.check(difference(x[right], x[left]), place);
   const auto places = fmt::format("{} after {}", x[right], x[left]);
   if (std::is_lt(order)) throw Error(place, "not increasing", places, "give the particles in order of increasing x");
   if (std::is_gt(compare_decimals(v[left], v[right])))

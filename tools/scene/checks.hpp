@@ -27,16 +27,14 @@ void refuse_inapplicable_keys(const Entries& entries, const Scene& scene, std::s
 /// that are missing.
 void check_scene(const Scene& scene, const Entries& entries, const std::string& scene_file);
 
-/// The numbers that the working precision of a run can hold. A larger number would become infinite and spoil the run; a
-/// smaller one becomes 0, which is not allowed for masses.
+/// The numbers that the working precision of a run can hold, beside 0. A larger number would become infinite and spoil
+/// the run; a smaller one would become 0.
 class NumberRange {
  public:
   explicit NumberRange(const Run& run) : type_(scalar_row(run.precision)) {}
 
-  /// Throws Error at `place` if a canonical decimal is too large.
+  /// Throws Error at `place` if a canonical decimal is too large or too small.
   void check(std::string_view literal, const Place& place) const;
-  /// The same if a positive one is too small.
-  void check_positive(std::string_view literal, const Place& place) const;
 
  private:
   const ScalarRow& type_;

@@ -117,11 +117,8 @@ void two_clusters(const Checked& of) {
                 "give the left cluster first");
   if (of.scene.run.start < Decimal("0"))
     of.refuse("run.start", "before the clusters begin to grow", of.scene.run.start.text, "give 0 or more");
-  try {
-    theory::WetZone<double>({of.scene.law.loss.value, initial.speed.value, initial.spacing.value});
-  } catch (const std::domain_error& error) {
-    of.refuse("law.loss", error.what(), of.scene.law.loss.text, "give another loss or initial.speed");
-  }
+  if (const std::string without = without_zone(of.scene); !without.empty())
+    of.refuse("law.loss", without, of.scene.law.loss.text, "give another loss or initial.speed");
   for (const Field& field : scene_fields()) {
     const std::string_view key = field.key;
     if (!key.starts_with("output.") || key.starts_with("output.series.") || key.starts_with("output.checkpoint.") ||
@@ -285,6 +282,13 @@ void masses_repeat(const Checked& of) {
 }
 
 }  // namespace
+
+std::string without_zone(const Scene& scene) try {
+  theory::WetZone<double>({scene.law.loss.value, scene.initial.speed.value, scene.initial.spacing.value});
+  return "";
+} catch (const std::domain_error& error) {
+  return error.what();
+}
 
 void check_state(const Checked& of) {
   for (const auto check : {rows_meet, one_list_of_particles, two_clusters, gas_between_walls, walls_stand,

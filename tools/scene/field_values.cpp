@@ -127,6 +127,12 @@ std::size_t choice(const Field& field, const Value& value, const Scene& scene) {
 template <class List>
 requires requires(const List& list) { list.back(); }
 void read(const Field& field, const Value& value, Scene& scene, List& target) {
+  if (value.kind != Value::Kind::array && type_name(field) == "list of texts" && value.place.source == "--set") {
+    const auto names = choices_of(field);
+    throw Error(value.place, "wrong type", describe(value),
+                fmt::format("{}, in quotes: --set '{}=[\"{}\"]'", advice(field, scene), field.key,
+                            names.empty() ? "..." : names.front()));
+  }
   if (value.kind != Value::Kind::array) refuse(field, value, scene, "wrong type");
   target = {};
   for (const Value& item : value.items) {

@@ -443,8 +443,9 @@ const std::vector<Field> fields_after_walls{
      "in an ensemble, keep the snapshots and profiles of every replica beside the statistics"},
     {"output.checkpoint.every_seconds", output_of<&Output::checkpoint, &Checkpoint::every_seconds>, "", "60",
      "[0, inf)", &always,
-     "seconds of computing between checkpoints, from which `cradle resume` continues; 0: only when the run ends or is "
-     "interrupted. Never changes a result, and is not written into it",
+     "seconds of computing between checkpoints, from which `cradle resume` continues, or ten times as long as the last "
+     "one took to write if that is more; 0: only when the run ends or is interrupted. Never changes a result, and is "
+     "not written into it",
      nullptr, false},
 
     {"sweep.vary", sweep_of<&Sweep::vary>, "", "[]", "", &always,

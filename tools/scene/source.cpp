@@ -17,6 +17,7 @@ namespace {
 constexpr std::string_view blanks = " \t\r\n";
 constexpr std::string_view literal_characters = "0123456789abcdefABCDEFinoxINOX_+-.";
 constexpr std::string_view decimal_characters = "0123456789+-_.eE";
+constexpr std::ptrdiff_t most_parts = 16;  // of a key: toml++ and what follows recurse for each
 
 // The end of the comment or string that begins at `i`; `i` if none begins there.
 std::size_t skip_comment_or_string(std::string_view text, std::size_t i) {
@@ -47,10 +48,12 @@ bool is_toml_number(std::string_view text) {
 }
 
 // toml++ refuses numbers beyond int64, the range of double or its buffer. This puts them in quotation marks, which
-// changes columns but not lines. A literal is text at the place of a value that is not followed by '='.
+// changes columns but not lines. A literal is text at the place of a value that is not followed by '='. Throws
+// toml::parse_error for a key of too many parts.
 std::string quote_wide_literals(std::string_view text) {
   std::string result;
   char before = '\n';  // the last non-blank character
+  std::ptrdiff_t points = 0;
   for (std::size_t i = 0; i < text.size();) {
     std::size_t end = skip_comment_or_string(text, i);
     if (end > i) {
@@ -61,7 +64,13 @@ std::string quote_wide_literals(std::string_view text) {
     }
     end = std::min(text.find_first_not_of(decimal_characters, i), text.size());
     const auto literal = text.substr(i, end - i);
+    points += std::ranges::count(literal, '.');
+    if (points >= most_parts) {
+      const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(i), '\n');
+      throw toml::parse_error("a key of more than 16 parts", toml::source_position{static_cast<unsigned>(line), 1});
+    }
     if (literal.empty()) {
+      if (std::string_view("=,[]{}\n").find(text[i]) != text.npos) points = 0;
       if (blanks.find(text[i]) == blanks.npos) before = text[i];
       result += text[i++];
       continue;
@@ -153,8 +162,8 @@ void flatten(const toml::node& node, const Literals& literals, const Place& plac
 
 // The entries of `value = TEXT`, under `key`; nothing if TEXT is not TOML.
 std::optional<Entries> assigned(std::string_view text, const Place& place) {
-  const std::string document = quote_wide_literals("value = " + std::string(text));
   try {
+    const std::string document = quote_wide_literals("value = " + std::string(text));
     const toml::table table = toml::parse(document);
     if (table.size() != 1) return {};  // TEXT had a line end and a second key
     const Literals literals(document);
@@ -216,8 +225,8 @@ std::string describe(const Value& value) {
 
 Entries read_entries(std::string_view toml, const std::string& source_name) {
   if (toml.starts_with("\xEF\xBB\xBF")) toml.remove_prefix(3);  // byte order mark
-  const std::string document = quote_wide_literals(toml);
   try {
+    const std::string document = quote_wide_literals(toml);
     const toml::table table = toml::parse(document);
     Entries entries;
     flatten(table, Literals(document), Place{source_name}, entries);

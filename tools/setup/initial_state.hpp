@@ -210,12 +210,24 @@ std::optional<AtWall<T>> at_wall_in(const Scene& scene, End end, const Displacem
 
 }  // namespace detail
 
+/// The place of the first of these keys that the scene gives, or of the initial state.
+inline Place place_of_any(const Scene& scene, std::initializer_list<const char*> keys) {
+  const auto* const key = std::ranges::find_if(keys, [&](const char* k) { return scene.places.contains(k); });
+  return scene.place(key == keys.end() ? "initial" : *key);
+}
+
 /// Throws Error if this precision cannot represent the scene's particles, or if its walls do not fit beside them.
 template <Real T> std::shared_ptr<const cradle::Particles<T>> initial_particles(const Scene& scene) {
+  Place cause = scene.place("initial");  // of what is refused
   try {
     const Displacement displacement = displacement_of(scene.initial);
     auto particles = detail::particles_without_walls<T>(scene.initial, scene.walls, displacement);
+    cause = is_finite(particles->total_mass())
+                ? place_of_any(scene, {"initial.v", "initial.speed", "initial.left.speed", "initial.right.speed",
+                                       "initial.energy", "initial.variance"})
+                : place_of_any(scene, {"initial.m", "initial.masses", "initial.random_masses", "initial.centre.mass"});
     require_sums(*particles);
+    cause = scene.place(scene.walls.any() ? "walls" : "gravity");
     if (!scene.walls.any() && !scene.gravity.acts()) return particles;
     auto left = detail::wall_of<T>(scene.walls.left, scene.initial),
          right = detail::wall_of<T>(scene.walls.right, scene.initial);
@@ -225,7 +237,7 @@ template <Real T> std::shared_ptr<const cradle::Particles<T>> initial_particles(
                                        scene.gravity.acts() ? number<T>(*scene.gravity.acceleration) : T(0),
                                        std::move(at_left), std::move(at_right));
   } catch (const std::invalid_argument& error) {
-    throw Error(scene.place("initial"), "the particles cannot be set up", error.what(), "change the scene");
+    throw Error(cause.prefix() + error.what());
   }
 }
 

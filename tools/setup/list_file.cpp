@@ -87,11 +87,8 @@ class Reader {
       const auto& [name, numbers] = *order_[i];
       if (numbers == nullptr || (cells[i].empty() && may_be_empty(numbers))) continue;
       const std::string literal = number(cells[i], name);
-      if (numbers == &ListedColumns::m) {
-        if (std::is_lteq(compare_decimals(literal, "0")))
-          throw Error(place(name), "out of range", literal, "give a mass above 0");
-        range_.check_positive(literal, place(name));
-      }
+      if (numbers == &ListedColumns::m && std::is_lteq(compare_decimals(literal, "0")))
+        throw Error(place(name), "out of range", literal, "give a mass above 0");
       (listed_.*numbers).push_back(literal);
     }
     ended_ = has(&ListedColumns::gap) && listed_.gap.size() < listed_.v.size();

@@ -195,9 +195,14 @@ Scene read_scene(const std::string& path_or_name, const std::vector<std::string>
     if (const auto found = instead_of_file(path_or_name); !found.empty())
       throw Error({path_or_name}, "not a scene file", found, "save the scene in a file and give this", Exit::io);
     std::ifstream file(path_or_name, std::ios::binary);
-    std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-    if (!file || file.bad())
+    if (!file)
       throw Error({path_or_name}, "cannot be read", "a file that does not open", "check its permissions", Exit::io);
+    std::string text;
+    try {
+      text.assign(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
+    } catch (const std::ios_base::failure& error) {
+      throw Error({path_or_name}, "cannot be read", error.code().message(), "give a scene file", Exit::io);
+    }
     if (text.starts_with("\x89HDF"))
       throw Error({path_or_name}, "a result, not a scene", "HDF5",
                   fmt::format("give the scene file, or the csv/scene.toml that `cradle export {0} --to csv` writes; "

@@ -17,6 +17,7 @@ namespace {
 
 constexpr std::chrono::seconds between_statuses(2);
 constexpr double worth_keeping = 60;  // seconds of computing that a new run must not overwrite
+constexpr double least_between = 10;  // savings of a checkpoint: they take a tenth of the time at most
 constexpr double soon_repeated = 10;  // seconds of computing for which no checkpoint stays
 constexpr std::uint64_t most_waiting = std::uint64_t{1} << 22;  // numbers that are not in a journal that has begun
 
@@ -89,7 +90,8 @@ void RunFiles::add(Group&& rows) {
 }
 
 bool RunFiles::checkpoint_due(Clock::time_point now) const {
-  return header_.every_seconds > 0 && std::chrono::duration<double>(now - saved_).count() > header_.every_seconds;
+  const double least = std::max(header_.every_seconds, least_between * saving_);
+  return header_.every_seconds > 0 && std::chrono::duration<double>(now - saved_).count() > least;
 }
 
 bool RunFiles::worth_extending(double seconds) const {
@@ -126,6 +128,7 @@ void RunFiles::keep(const RunStatus& status, const std::function<void(StateSink&
         save(writer);
         writer.finish();
       });
+  saving_ = std::chrono::duration<double>(Clock::now() - saved_).count();
   saved_here_ = saved_here_ || up_to_date_;
 }
 

@@ -91,6 +91,7 @@ class RunFiles : public Sink {
   bool due_ = false, saved_here_ = false, complained_ = false;
   bool up_to_date_ = false;    // the checkpoint, since the last call of `keep` that was to write one
   double seconds_before_ = 0;  // of computing, in earlier calls
+  double saving_ = 0;          // seconds, of the last checkpoint
   Clock::time_point started_ = Clock::now(), reported_ = started_, saved_ = started_;
 };
 

@@ -58,7 +58,7 @@ struct Place {
     if (line > 0) text += ":" + std::to_string(line);
     if (key.empty()) return text.empty() ? text : text + ": ";
     if (!text.empty()) text += source == "--set" ? " " : ": ";
-    return text + key + ": ";
+    return text + excerpt(key) + ": ";
   }
 };
 

@@ -10,8 +10,13 @@
 
 namespace cradle::tools {
 
-/// Number of letters to insert, delete, change or swap with a neighbour to get from one word to the other.
+/// Two words that differ in more letters than this are not similar.
+inline std::size_t alike(std::string_view word) { return word.size() < 5 ? 1 : word.size() < 12 ? 2 : word.size() / 4; }
+
+/// Number of letters to insert, delete, change or swap with a neighbour to get from one word to the other; of words
+/// that cannot be similar, only how many letters more one of them has.
 inline std::size_t edit_distance(std::string_view a, std::string_view b) {
+  if (const auto more = std::max(a.size(), b.size()) - std::min(a.size(), b.size()); more > alike(a)) return more;
   std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
   for (std::size_t i = 0; i <= a.size(); ++i) {
     for (std::size_t j = 0; j <= b.size(); ++j) {
@@ -26,9 +31,6 @@ inline std::size_t edit_distance(std::string_view a, std::string_view b) {
   }
   return d[a.size()][b.size()];
 }
-
-/// Two words that differ in more letters than this are not similar.
-inline std::size_t alike(std::string_view word) { return word.size() < 5 ? 1 : word.size() < 12 ? 2 : word.size() / 4; }
 
 /// The most similar word, the first of several; empty if none is similar.
 template <class Words> std::string_view nearest_word(std::string_view word, const Words& known) {

@@ -120,6 +120,17 @@ TEST_F(Signals, EndAProgramThatIsStillSettingUp) {
   for (const char* file : {"ring.h5.part", "ring.h5.checkpoint"}) EXPECT_FALSE(exists(file)) << file;
 }
 
+TEST_F(Signals, EndACommandThatPollsForNone) {
+  for (const char* signal : {"USR1", "HUP"}) {
+    const Printed search = shell(std::string("cradle words 6 --search 12 -o y.h5 >out & pid=$!; until [ -e "
+                                             ".y.h5.cradle-lock ]; do sleep 0.01; done; kill -") +
+                                     signal + " $pid; wait $pid",
+                                 143);
+    EXPECT_TRUE(has(search.err, "cradle: interrupted")) << search.err;
+    shell("rm -f .y.h5.cradle-lock", 0);
+  }
+}
+
 // In a process of its own that has polled for signals and gets some: how soon after the first one another counts as the
 // same decides, not how soon they come here.
 constexpr long at_once = -1, within_a_day = 86400000;

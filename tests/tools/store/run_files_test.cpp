@@ -1,5 +1,7 @@
 // The files beside a result during its run, as users meet them: inspected, damaged, of another version, or of another
 // run that is in the way.
+#include <thread>
+
 #include "cradle/tests/tools/faults.hpp"
 #include "cradle/tests/tools/program.hpp"
 #include "cradle/tools/result/difference.hpp"
@@ -137,6 +139,19 @@ TEST_F(Files, ARunThatIsNotFinishedIsNotThrownAwayByAnother) {
   shell("cradle resume a.h5", 0);
   shell(run + "-o a.h5 --force", 0);
   EXPECT_FALSE(exists("a.h5.part"));
+}
+
+// However often checkpoints are wanted, the next one begins after ten times the time that the last one took.
+TEST_F(Files, CheckpointsTakeATenthOfTheTimeAtMost) {
+  RunFiles files(path("a.h5"), parse_scene(header().scene, "s.toml", {"output.checkpoint.every_seconds=1e-9"}));
+  constexpr std::chrono::milliseconds taken(20);
+  int saved = 0;
+  const auto begin = std::chrono::steady_clock::now();
+  for (int k = 0; k < 50; ++k)
+    files.keep(
+        {}, [&](cradle::StateSink&) { ++saved, std::this_thread::sleep_for(taken); }, RunIs::in_progress);
+  EXPECT_GE(saved, 1);
+  EXPECT_LE(10 * (saved - 1) * taken, std::chrono::steady_clock::now() - begin);
 }
 
 // A number of the state that has changed, as memory without error correction does it: nothing of the file is damaged,

@@ -28,10 +28,12 @@ bool is_random(const Scene& scene) {
 JournalHeader header_in(const Result& result, const std::string& file, const char* otherwise) {
   const auto& of_file = result.attributes;
   const auto* kind = find_attribute<std::string>(of_file, "kind");
-  if (kind == nullptr || (*kind != "ensemble" && *kind != "sweep"))
+  if (kind == nullptr ? find_attribute<std::uint64_t>(of_file, "identity") == nullptr
+                      : *kind != "ensemble" && *kind != "sweep")
     throw Error({file}, "holds no ensemble",
                 kind == nullptr ? "a single run, or another command's result" : "a result of " + *kind, otherwise);
-  JournalHeader header{*kind, attribute<std::uint64_t>(of_file, "identity", file),
+  JournalHeader header{attribute<std::string>(of_file, "kind", file),
+                       attribute<std::uint64_t>(of_file, "identity", file),
                        attribute<std::string>(of_file, "scene", file), attribute<std::string>(of_file, "name", file)};
   const std::string spread = "ensemble/spread/", below = "/ensemble";
   for (const Group& group : result.groups) {

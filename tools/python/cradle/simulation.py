@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from .commands import Scene, Settings, source_of, words_of
 from .compiled import module, threads_of
-from .errors import BAD_INPUT, Error, callable_of, imported, path_of, shown
+from .errors import BAD_INPUT, Error, argument, callable_of, imported, path_of
 from .result import Result, open
 from .scene import parse_toml, value_text
 from .timer import EXACT, Time, Timer, decimal_of
@@ -101,11 +101,9 @@ class Simulation:
                  restitution: Callable[[float], float] | None = None):
         source, name = source_of(scene)
         settings = words_of(set=set)[1::2] + [f"initial.seed={value_text(word)}" for word in words_of(seed=seed)[1:]]
-        if restitution is not None:
-            callable_of(restitution, "restitution")
-        held = module().Run(os.fsencode(source), "\n" in source, name, settings, threads_of(threads),
-                            restitution is not None)
-        self._begin(held, restitution)
+        restitution = None if restitution is None else callable_of(restitution, "restitution")
+        self._begin(module().Run(os.fsencode(source), "\n" in source, name, settings, threads_of(threads),
+                                 restitution is not None), restitution)
 
     def _begin(self, run, restitution=None) -> None:
         self._run, self._restitution = run, restitution
@@ -126,9 +124,9 @@ class Simulation:
 
     def step(self, n: int = 1) -> None:
         """Makes the next n collisions, or all until run.until if these are fewer; the state is that after the last."""
-        if not isinstance(n, Integral) or n < 0:
-            raise Error(f"step: not a number of collisions (found {shown(n)}): give a whole number from 0 on",
-                        BAD_INPUT)
+        with argument("step", n, "a number of collisions", "give a whole number from 0 on"):
+            if not isinstance(n, Integral) or n < 0:
+                raise ValueError
         self._compute(decimal_of(self._run.until), min(int(n), MOST_COLLISIONS))
 
     def stop(self) -> None:
@@ -272,10 +270,8 @@ class Simulation:
         return result
 
     def save(self, path: str | os.PathLike, *, force: bool = False) -> None:
-        """Saves a checkpoint, from which load() continues with the same bits. Raises Error if the run is over.
-
-        It replaces a checkpoint, and with force whatever else is there, a result for instance.
-        """
+        """Saves a checkpoint, from which load() continues with the same bits. It replaces a checkpoint, and with force
+        whatever else is there, a result for instance. Raises Error if the run is over."""
         self._run.save(os.fsencode(path_of(path, "save")), words_of(force=force) != [])
 
     @classmethod

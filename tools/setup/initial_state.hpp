@@ -218,25 +218,29 @@ inline Place place_of_any(const Scene& scene, std::initializer_list<const char*>
 
 /// Throws Error if this precision cannot represent the scene's particles, or if its walls do not fit beside them.
 template <Real T> std::shared_ptr<const cradle::Particles<T>> initial_particles(const Scene& scene) {
-  Place cause = scene.place("initial");  // of what is refused
+  std::shared_ptr<const cradle::Particles<T>> particles;
+  bool summed = false;
   try {
     const Displacement displacement = displacement_of(scene.initial);
-    auto particles = detail::particles_without_walls<T>(scene.initial, scene.walls, displacement);
-    cause = is_finite(particles->total_mass())
-                ? place_of_any(scene, {"initial.v", "initial.speed", "initial.left.speed", "initial.right.speed",
-                                       "initial.energy", "initial.variance"})
-                : place_of_any(scene, {"initial.m", "initial.masses", "initial.random_masses", "initial.centre.mass"});
+    particles = detail::particles_without_walls<T>(scene.initial, scene.walls, displacement);
     require_sums(*particles);
-    cause = scene.place(scene.walls.any() ? "walls" : "gravity");
+    summed = true;
     if (!scene.walls.any() && !scene.gravity.acts()) return particles;
     auto left = detail::wall_of<T>(scene.walls.left, scene.initial),
          right = detail::wall_of<T>(scene.walls.right, scene.initial);
     auto at_left = detail::at_wall_in<T>(scene, End::left, displacement, *particles, left),
          at_right = detail::at_wall_in<T>(scene, End::right, displacement, *particles, right);
-    return std::make_shared<Walled<T>>(std::move(particles), std::move(left), std::move(right),
+    return std::make_shared<Walled<T>>(particles, std::move(left), std::move(right),
                                        scene.gravity.acts() ? number<T>(*scene.gravity.acceleration) : T(0),
                                        std::move(at_left), std::move(at_right));
   } catch (const std::invalid_argument& error) {
+    const Place cause =
+        !particles ? scene.place("initial")
+        : summed   ? scene.place(scene.walls.any() ? "walls" : "gravity")
+        : is_finite(particles->total_mass())
+            ? place_of_any(scene, {"initial.v", "initial.speed", "initial.left.speed", "initial.right.speed",
+                                   "initial.energy", "initial.variance"})
+            : place_of_any(scene, {"initial.m", "initial.masses", "initial.random_masses", "initial.centre.mass"});
     throw Error(cause.prefix() + error.what());
   }
 }

@@ -10,7 +10,7 @@
 //                              a loop
 //   record(now, due, put)      then: keeps or puts what was found
 //   record_last(now, put)      where a run ends early, with a collision
-//   made(counts)               told the counts before the next collision, before rows are written and at the end
+//   made(counts)               gets the counts before the next collision, before rows are written and at the end
 //   collision(c)               every collision, before it is made
 //   rows(), put_rows(put)      of a table that grows during the run: how many wait, and puts these
 //   finish(now, put)           the end

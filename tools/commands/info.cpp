@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <concepts>
 #include <cstdio>
 #include <filesystem>
 #include <map>
@@ -44,10 +45,18 @@ std::string_view kind_of(const Group& group) {
   return name.substr(0, name.find_last_not_of("0123456789") + 1);
 }
 
+// NaN stands where there is no such thing, a front on a ring for instance.
+template <class X> std::string shown(const X& x) {
+  if constexpr (std::floating_point<X>)
+    if (std::isnan(x)) return "none";
+  return fmt::format("{}", x);
+}
+
 std::string first_and_last(const Column& column) {
   return std::visit(
       [&](const auto& v) {
-        return v.empty() ? std::string() : fmt::format("  {:<21} {} to {}\n", column.name, v.front(), v.back());
+        return v.empty() ? std::string()
+                         : fmt::format("  {:<21} {} to {}\n", column.name, shown(v.front()), shown(v.back()));
       },
       column.values);
 }

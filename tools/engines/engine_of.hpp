@@ -214,6 +214,23 @@ template <Real T> void require_masses_that_fall(const Scene& scene, const cradle
               "give run.coordinates = \"absolute\" or run.precision = \"double-double\"");
 }
 
+/// Throws Error for wet particles whose masses, loss and energies make products beyond the range of the type: the law
+/// would compare zeros and infinities.
+template <Real T> void require_products_in_range(const Scene& scene, const cradle::Particles<T>& particles) {
+  const ScalarRow& type = scalar_row(scene.run.precision);
+  if (scene.law.type != LawType::wet || !(scene.law.loss > Decimal("0")) || type.least.empty()) return;
+  // Of the two lightest particles, and of all in two clusters: in any pair m_l m_r w^2 is at most 2 E (m_l + m_r).
+  const T loss = number<T>(scene.law.loss), energy = particles.kinetic_energy() + loss, light = particles.least_mass(),
+          all = particles.total_mass(), least = from_text<T>(type.least) * from_text<T>("1e20");
+  const auto finite = [](const auto&... x) { return (is_finite(T(x * T(4))) && ...); };
+  if (finite(T(all * all), T(energy * all), T(energy / light)) && least < T(light * light) && least < T(loss * light))
+    return;
+  throw Error(scene.place("law.loss"), "wet particles whose masses, loss and energy have products beyond the range",
+              fmt::format("masses from {:g}, {:g} together, energy {:g} with \"{}\"", to_double(light), to_double(all),
+                          to_double(particles.kinetic_energy()), type.name),
+              "give numbers nearer to 1 (other units), or run.precision = \"mpfr\"");
+}
+
 template <Real T>
 std::unique_ptr<Engine<T>> engine_of(const Scene& scene, const std::shared_ptr<const cradle::Particles<T>>& particles,
                                      const Policy<T>& policy, const Workers& workers, bool observed) {
@@ -223,6 +240,7 @@ std::unique_ptr<Engine<T>> engine_of(const Scene& scene, const std::shared_ptr<c
   const auto on = [&]<class Chain, class Law>(std::type_identity<Chain>, const Law& law) {
     return std::make_unique<EngineOf<T, Simulation<T, Law, Chain>>>(workers, law, Chain(particles, start), policy);
   };
+  require_products_in_range<T>(scene, *particles);
   if (particles_merge(scene)) return on(std::type_identity<ClusterChain<T>>{}, merging_law<T>(scene));
   const BouncingLaw<T> law = bouncing_law<T>(scene);
   if (scene.run.coordinates == Coordinates::absolute) return on(std::type_identity<PositionChain<T>>{}, law);

@@ -10,6 +10,7 @@
 #include <optional>
 #include <utility>
 
+#include "cradle/tools/engines/precision.hpp"
 #include "cradle/tools/ensemble/replica_run.hpp"
 #include "cradle/tools/support/spelling.hpp"
 #include "cradle/tools/support/threads.hpp"
@@ -29,9 +30,10 @@ std::vector<JobRange> jobs_left(const EnsembleStore& store, ReplicaRange wanted)
 void check_digits(const Study& study) {
   for (const Study::Point& point : study.points)
     if (point.scene.run.digits != study.points.front().scene.run.digits)
-      throw Error({"", 0, "run.digits"}, "ensembles of different digits in one file",
-                  fmt::format("{} and {}", study.points.front().scene.run.digits, point.scene.run.digits),
-                  "run them one after the other");
+      throw Error(
+          {"", 0, "run.precision"}, "ensembles of different digits in one file",
+          fmt::format("{} and {}", precision_name(study.points.front().scene.run), precision_name(point.scene.run)),
+          "run them one after the other");
 }
 
 // The command that runs this replica alone, with the settings of its point.

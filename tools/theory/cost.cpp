@@ -140,11 +140,12 @@ std::string end_line(const Scene& scene) {
       scene.run.stop_gap     ? fmt::format("a gap below run.stop_gap = {} does, too", scene.run.stop_gap->text)
       : ends_unproved(scene) ? "without proof, a gap below 2^-100 of one beside it at the start does, too"
                              : "another does where numbers leave their range (status 5), which may take long";
-  return fmt::format("a collapse that is proved ends the run (status 3); {}; to go past it: "
-                     "law.cutoff, or run.collapse = \"merge\" with a run.merge_speed\nin the collapse more collisions "
-                     "follow, how many is not known beforehand (of 200 particles some 1e7 at restitution 0.9, unless "
-                     "run.stop_gap ends it sooner)\n",
-                     unproved);
+  return fmt::format(
+      "a collapse that is proved ends the run (status 3); {}; to go past it: "
+      "law.cutoff, or run.collapse = \"merge\" with a run.merge_speed\nif it comes to that, more collisions "
+      "follow, how many is not known beforehand (of 200 particles some 1e7 at restitution 0.9, unless "
+      "run.stop_gap ends it sooner)\n",
+      unproved);
 }
 
 // As to_be_watched (core/chains/masses.hpp) says of so many particles that two threads could share them.

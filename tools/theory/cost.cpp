@@ -142,7 +142,7 @@ std::string end_line(const Scene& scene) {
                              : "another does where numbers leave their range (status 5), which may take long";
   return fmt::format(
       "a collapse that is proved ends the run (status 3); {}; to go past it: "
-      "law.cutoff, or run.collapse = \"merge\" with a run.merge_speed\nif it comes to that, more collisions "
+      "law.cutoff, or run.collapse = \"merge\" with a run.merge_speed\nif they collapse, more collisions "
       "follow, how many is not known beforehand (of 200 particles some 1e7 at restitution 0.9, unless "
       "run.stop_gap ends it sooner)\n",
       unproved);

@@ -2,6 +2,7 @@
 // The particles of a scene at the start: read-only initial data, numbered from left to right. Chains copy the particles
 // that they hold; particles of a row that the front has not reached are only here.
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <string>
@@ -150,7 +151,7 @@ template <Real T> class Particles {
   }
 };
 
-// Throws std::invalid_argument if the total mass, momentum or energy is beyond the type's range.
+// Throws std::invalid_argument if the total mass, momentum or energy of the particles is beyond the type's range.
 template <Real T> void require_sums(const Particles<T>& particles) {
   const auto require_sum = [](const T& sum, const char* what) {
     require(is_finite(sum), what,
@@ -159,7 +160,16 @@ template <Real T> void require_sums(const Particles<T>& particles) {
   };
   require_sum(particles.total_mass(), "the mass");
   require_sum(particles.momentum(), "the momentum");
-  require_sum(particles.kinetic_energy(), "the kinetic energy");
+  const T energy = particles.kinetic_energy();
+  require_sum(energy, "the kinetic energy");
+  // An energy that underflows has fewer digits than the type. Particles at rest have none; a million are looked at.
+  if (!(energy * T(std::numeric_limits<T>::epsilon()) < T(std::numeric_limits<T>::min()))) return;
+  bool move = is_positive(energy);
+  for (ParticleIndex k = 0; k < std::min(particles.count(), ParticleIndex{1} << 20) && !move; ++k)
+    move = !(particles.velocity(k) == T(0));
+  require(!move,
+          "the kinetic energy of all particles underflows (found less than the type holds with all its digits): give "
+          "larger masses or speeds, or a scalar type of a wider range");
 }
 
 // For random states: throws std::invalid_argument for no particles, or more than their numbers are made for.

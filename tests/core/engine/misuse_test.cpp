@@ -27,7 +27,7 @@ TEST(Misuse, UnequalMassesInAChainForIdenticalOnes) {
 }
 
 // Sums that the type does not hold are refused, by chains and by the gas that has none.
-TEST(Misuse, MassesAndSpeedsWhoseSumsOverflow) {
+TEST(Misuse, MassesAndSpeedsWhoseSumsAreOutOfRange) {
   const auto still_rows = [](double speed, double mass) {
     return std::make_shared<Rows<double>>(
         symmetric_rows(8, speed, 1.0, Displacement(still), MassPattern<double>({mass})));
@@ -49,6 +49,14 @@ TEST(Misuse, MassesAndSpeedsWhoseSumsOverflow) {
     expect_refused([&] { ClusterChain<double>(all, 0.0); }, message, "no finite number");
     expect_refused([&] { StickyGas<double>(all, 0.0); }, message, "no finite number");
   }
+  const std::shared_ptr<const Particles<double>> slow[] = {list<double>({0, 1}, {1e-170, -1e-170}),
+                                                           list<double>({0, 1}, {1e-150, -1e-150}, {1e-10, 1e-10}),
+                                                           still_rows(1e-160, 1)};
+  for (const auto& all : slow)
+    expect_refused([&] { ClusterChain<double>(all, 0.0); }, "the kinetic energy of all particles underflows",
+                   "all its digits");
+  EXPECT_NO_THROW(ClusterChain<double>(list<double>({0, 1}, {0, 0}), 0.0));
+  EXPECT_NO_THROW(ClusterChain<double>(list<double>({0, 1}, {1e-140, -1e-140}), 0.0));
   // The square of a momentum is not needed: masses of 1e200 at unit speeds are accepted.
   const auto heavy = list<double>({0, 1}, {1, 0.5}, {1e200, 1e200});
   EXPECT_NO_THROW((GapChain<double, IndividualMasses<double>>(heavy, 0.0)));

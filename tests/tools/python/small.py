@@ -1,6 +1,8 @@
 """What the tests share: small results, made once in the working folder; a check of errors; what a page refers to."""
 import functools
 import html.parser
+import subprocess
+import sys
 import unittest
 
 import cradle
@@ -56,6 +58,15 @@ def written(path, content):
     with open(path, "wb") as file:
         file.write(content)
     return path
+
+
+def python_again(calls):
+    """What another Python prints, whose sets have another order, when the package's command is called with each of
+    these lists of words, as the program calls it. Nothing may be written to standard error."""
+    script = f"import sys, cradle.__main__ as package\nfor words in {calls!r}:\n  if package.main(words): sys.exit(1)"
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (0, ""), done
+    return done.stdout
 
 
 SHOCK = {"initial.particles": 200, "run.until": 60, "output.snapshots": [20, 60], "output.profiles.times": [30, 60],

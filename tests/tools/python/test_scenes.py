@@ -1,6 +1,6 @@
 """Every scene of the package, at the size of tests/tools/run/small_scenes.txt, ends with the status that it is meant to
-end with, and a report with all pictures is made of its result. They are drawn once, for a dark page: plots_test draws
-all kinds for light ones. A scene that is added needs a row there."""
+end with, and a report with all pictures is made of its result. They are drawn once, for a dark page:
+test_pictures draws all kinds for light ones. A scene that is added needs a row there."""
 import multiprocessing
 import pathlib
 import subprocess

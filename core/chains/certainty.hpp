@@ -223,11 +223,13 @@ template <Real T, class Gaps> class Certainty {
   template <class Masses>
   void round(Gaps& gaps, Slot p, Slot s, Slot n, const Outcome<T>& outcome, const Masses& masses) {
     const N left = number(outcome.to_left), right = number(outcome.to_right);
+    const N smaller = std::min<N>(left, right), larger = std::max<N>(left, right);
+    const N rounded = larger > N(15) * smaller ? smaller : larger;  // the smaller one is what the other one leaves
     const bool light_left = left > right;
     for (std::size_t k = 0; k < Off::samples; ++k) {
       const N ratio =
           (Roundings<N>::of(to_double(masses.left), k) - Roundings<N>::of(to_double(masses.right), k)) / N(2);
-      const N kick = std::min<N>(left, right) * (ratio + N(2) * roundings_.next());
+      const N kick = smaller * ratio + rounded * N(2) * roundings_.next();
       const N back = number(outcome.closing) * roundings_.next();
       gaps[light_left ? n : p].off.closing[k] += kick;
       gaps[light_left ? p : n].off.closing[k] -= kick + back;

@@ -30,7 +30,7 @@ template <Real T> struct alignas(std::same_as<T, double> ? 64 : alignof(T)) Cell
 
 template <Real T> class ClusterLine {
  public:
-  using Gaps = TimedGaps<T, Cell<T>, false>;
+  using Gaps = TimedGaps<T, Cell<T>>;
 
   // `runaway`: twice the largest possible speed or more.
   ClusterLine(const T& start, const T& energy, const T& runaway) : gaps(start, energy), runaway_(runaway) {}

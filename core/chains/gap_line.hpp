@@ -26,7 +26,7 @@ template <Real T, class MassesOf> class GapLine {
   using Scalar = T;
   using Masses = MassesOf;
   static constexpr bool watched = Watched<Masses>;
-  using Gaps = TimedGaps<T, std::conditional_t<watched, WatchedGap<T>, Gap<T>>, true>;
+  using Gaps = TimedGaps<T, std::conditional_t<watched, WatchedGap<T>, Gap<T>>>;
 
   GapLine(const Particles<T>& particles, const T& start, typename Gaps::Memory memory = {})
       : gaps(start, particles.energy_to_lose(), std::move(memory)), masses(particles),

@@ -29,14 +29,13 @@
 
 namespace cradle {
 
-// `may_collapse`: gaps and times may shrink without limit, beyond the range of double if the type's range is wider.
-template <Real T, std::derived_from<TimedGap<T>> Cell, bool may_collapse> class TimedGaps : public TimedCells<T, Cell> {
+template <Real T, std::derived_from<TimedGap<T>> Cell> class TimedGaps : public TimedCells<T, Cell> {
   using Cells = TimedCells<T, Cell>;
 
  public:
   using Cells::resize, Cells::flown, Cells::collision_time;
   static constexpr bool keys_are_exact = std::same_as<T, double>;
-  static constexpr bool beyond_double = may_collapse && WiderRange<T>;
+  static constexpr bool beyond_double = WiderRange<T>;  // gaps and times may be beyond the range of double
 
   TimedGaps(const T& start, const T& energy, typename Cells::Memory memory = {})
       : Cells(std::move(memory)), clock_(start), lost_(energy) {}

@@ -151,25 +151,30 @@ template <Real T> class Particles {
   }
 };
 
-// Throws std::invalid_argument if the total mass, momentum or energy of the particles is beyond the type's range.
+// Throws std::invalid_argument if the total mass, momentum or energy of the particles, or their moment, by which
+// positions are found, is beyond the type's range.
 template <Real T> void require_sums(const Particles<T>& particles) {
   const auto require_sum = [](const T& sum, const char* what) {
     require(is_finite(sum), what,
             " of all particles overflows (found no finite number): give smaller masses or speeds, or a scalar type of "
             "a wider range");
   };
+  const T energy = particles.kinetic_energy(), least = std::numeric_limits<T>::min();
   require_sum(particles.total_mass(), "the mass");
   require_sum(particles.momentum(), "the momentum");
-  const T energy = particles.kinetic_energy();
   require_sum(energy, "the kinetic energy");
-  // An energy that underflows has fewer digits than the type. Particles at rest have none; a million are looked at.
-  if (!(energy * T(std::numeric_limits<T>::epsilon()) < T(std::numeric_limits<T>::min()))) return;
-  bool move = is_positive(energy);
+  const auto require_digits = [](bool held, const char* what, const char* to_do) {
+    require(held, what, " underflows (found less than the type holds with all its digits): give larger masses or ",
+            to_do, ", or a scalar type of a wider range");
+  };
+  const T farthest = std::max(magnitude(particles.position(0)), magnitude(particles.position(particles.count() - 1)));
+  require_digits(farthest == T(0) || !(T(particles.total_mass() * farthest) < least),
+                 "the mass times the position of all particles", "distances");
+  if (!(T(energy * T(std::numeric_limits<T>::epsilon())) < least)) return;
+  bool move = is_positive(energy);  // of particles at rest there is none; a million are looked at
   for (ParticleIndex k = 0; k < std::min(particles.count(), ParticleIndex{1} << 20) && !move; ++k)
     move = !(particles.velocity(k) == T(0));
-  require(!move,
-          "the kinetic energy of all particles underflows (found less than the type holds with all its digits): give "
-          "larger masses or speeds, or a scalar type of a wider range");
+  require_digits(!move, "the kinetic energy of all particles", "speeds");
 }
 
 // For random states: throws std::invalid_argument for no particles, or more than their numbers are made for.

@@ -39,12 +39,14 @@ template <Real T> struct TwoMasses {
   const T &left, &right;
 
   T reduced() const { return left * (right / (left + right)); }
-  // The lighter particle takes the larger share: compute that one by subtraction, so that both shares add up.
+  // The lighter particle takes the larger share: compute that one by subtraction, so that both shares add up. It is
+  // rounded, for masses in the ratio of small integers more often up than down, or down than up: then take the smaller
+  // share as what is left, which is exact, unless that would cost it more than 4 bits.
   Shares<T> shares(const T& half) const {
     const T handed = half + half;
     const bool left_lighter = left < right;
-    const T small = handed * ((left_lighter ? left : right) / (left + right));
-    const T large = handed - small;
+    const T share = (left_lighter ? left : right) / (left + right);
+    const T rough = handed * share, large = handed - rough, small = share < T(1) / T(16) ? rough : T(handed - large);
     return {left_lighter ? large : small, left_lighter ? small : large};
   }
 };

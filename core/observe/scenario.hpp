@@ -65,8 +65,9 @@ template <Real T> Cloud<T> cloud(const Configuration<T>& c) {
 template <Real T> std::vector<std::uint64_t> mass_distribution(const Configuration<T>& c, const T& least_mass) {
   std::vector<std::uint64_t> clusters;
   for (std::size_t j = c.collided_from; j < c.collided_to; ++j) {
-    // A whole mass is at an edge of a bin only if it is a power of two, whose logarithm is exact.
-    const double quarters = 4 * std::log2(to_double(T(c.m[j] / least_mass)));
+    // Sums of masses are rounded: what is that little below the edge of a bin is at it.
+    constexpr double roundings = 1e-9;
+    const double quarters = 4 * std::log2(to_double(T(c.m[j] / least_mass))) + roundings;
     const auto k = static_cast<std::size_t>(std::max(0.0, std::floor(quarters)));
     if (clusters.size() <= k) clusters.resize(k + 1);
     ++clusters[k];

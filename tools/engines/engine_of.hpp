@@ -231,6 +231,15 @@ template <Real T> void require_products_in_range(const Scene& scene, const cradl
               "give numbers nearer to 1 (other units), or run.precision = \"mpfr\"");
 }
 
+/// Throws Error for times beyond the range of double where collisions are queued by doubles alone.
+template <Real T> void require_times_in_range(const Scene& scene) {
+  if (WiderRange<T> && scene.run.coordinates == Coordinates::gaps) return;
+  if (std::isfinite(to_double(T(number<T>(scene.run.until) - number<T>(scene.run.start))))) return;
+  throw Error(scene.place("run.until"), "a time beyond the range of double, in which collisions are queued",
+              fmt::format("{} with \"{}\"", scene.run.until.text, scalar_row(scene.run.precision).name),
+              "give other units, or run.precision = \"mpfr\" in gaps");
+}
+
 template <Real T>
 std::unique_ptr<Engine<T>> engine_of(const Scene& scene, const std::shared_ptr<const cradle::Particles<T>>& particles,
                                      const Policy<T>& policy, const Workers& workers, bool observed) {
@@ -240,6 +249,7 @@ std::unique_ptr<Engine<T>> engine_of(const Scene& scene, const std::shared_ptr<c
   const auto on = [&]<class Chain, class Law>(std::type_identity<Chain>, const Law& law) {
     return std::make_unique<EngineOf<T, Simulation<T, Law, Chain>>>(workers, law, Chain(particles, start), policy);
   };
+  require_times_in_range<T>(scene);
   require_products_in_range<T>(scene, *particles);
   if (particles_merge(scene)) return on(std::type_identity<ClusterChain<T>>{}, merging_law<T>(scene));
   const BouncingLaw<T> law = bouncing_law<T>(scene);

@@ -77,6 +77,8 @@ class RunState {
   virtual const std::vector<ParticleIndex>& index() const = 0;
   /// The numbers of the outermost particles at the start.
   virtual std::pair<ParticleIndex, ParticleIndex> range() const = 0;
+  /// The places of the outermost particles that have collided; of all, if none has.
+  virtual BinRange ends() const = 0;
   /// The least and the median gap, and what closure misses, by name.
   virtual std::vector<std::pair<std::string, Number>> gap_numbers() const = 0;
   /// The state right after the last collision, of a run that ends with it.

@@ -85,6 +85,11 @@ template <Real T> class RunStateIn final : public RunState {
   }
   const std::vector<ParticleIndex>& index() const override { return configuration().index; }
   std::pair<ParticleIndex, ParticleIndex> range() const override { return {configuration().from, configuration().to}; }
+  BinRange ends() const override {
+    const Configuration<T>& c = configuration();
+    const bool any = c.collided_from < c.collided_to;
+    return {rounded(c.x[any ? c.collided_from : 0]), rounded(c.x[any ? c.collided_to - 1 : c.x.size() - 1])};
+  }
   std::vector<std::pair<std::string, Number>> gap_numbers() const override {
     const Configuration<T>& c = configuration();
     if (c.x.size() < 2) return {};

@@ -61,16 +61,14 @@ class ProfileMeasurement {
       range = {wanted[0].value, wanted[1].value};
     } else if (scene_.initial.on_ring()) {
       range = {0, now.circumference().value};
-    } else if (const SampledState& state = now.state(); state.front_left) {
-      range = {state.front_left->value, state.front_right->value};
     } else {
-      const std::vector<double> x = now.column(RunState::Column::x);
-      range = {x.front(), x.back()};
+      range = now.ends();
     }
     if (!(range.from < range.to)) range.to = range.from + 1;  // all particles at one place: the range has length 1
-    if (!std::isfinite(range.to - range.from))
-      throw Error(scene_.place("output.profiles.range"), "not given, and the particles are where no double reaches",
-                  now.time.exact.text(), "give it, or remove output.profiles", Exit::lost);
+    if (!(range.from < range.to) || !std::isfinite(range.to - range.from))
+      throw Error(scene_.place("output.profiles.range"), "not given, and the particles are too far away for bins",
+                  fmt::format("{:g} to {:g} at t = {}", range.from, range.to, now.time.exact.text()),
+                  "give it, or remove output.profiles", Exit::lost);
     return range;
   }
 

@@ -188,13 +188,13 @@ std::string exhausted_warning(const Number& time, std::uint64_t collisions, cons
 // relative to the present ones; if it holds velocities, to those at the start. Where collisions make errors grow, or a
 // threshold decides what happens, only an engine that watches them knows by how much: `grown` says that none has. After
 // an uncertain collision no digit is right, unless nothing is changed.
-double energy_digits(const Scene& scene, const AnyEngine& engine, const RunState& now, bool& grown) {
+double energy_digits(const Scene& scene, const AnyEngine& engine, const RunState& now, bool uncertain, bool& grown) {
   const double at_start = now.energy_at_start().value, at_end = now.state().energy.value;
   const std::optional<double> off = at_end > 0 ? now.energy_deviation(at_end) : 0;
   const bool heated = scene.walls.left.temperature || scene.walls.right.temperature;
   grown = !off && (particles_merge(scene) || heated || scene.walls.shaken() || scene.gravity.acts() ||
                    unequal_masses(scene) || scene.run.coordinates == Coordinates::absolute);
-  if (engine.account().uncertain > 0 && at_start != at_end) return 0;
+  if (uncertain && (at_start != at_end || engine.counts().collisions == 0)) return 0;
   const auto active = static_cast<double>(std::max<ParticleIndex>(engine.collided_particles(), 1));
   double error = 2 * std::sqrt(1 + static_cast<double>(engine.counts().collisions) / active);
   const bool velocities = scene.run.coordinates == Coordinates::absolute || particles_merge(scene);
@@ -268,9 +268,10 @@ RunEnding::RunEnding(const Scene& scene, const AnyEngine& engine, const RunState
     : outcome(outcome_of(scene, engine, now, status)) {
   Account<Number> account = engine.account();
   const auto found = status == Status::collapsed ? std::optional(engine.collapse()) : std::nullopt;
-  outcome.energy_digits = energy_digits(scene, engine, now, outcome.may_have_grown);
   const auto particle = now.uncertain();
   const bool uncertain_end = particle && account.uncertain == 0 && status == Status::reached;
+  outcome.energy_digits =
+      energy_digits(scene, engine, now, account.uncertain > 0 || uncertain_end, outcome.may_have_grown);
   if (uncertain_end) account.first_uncertain = {now.time.meant, *particle};
   const bool rests = status == Status::exhausted && engine.particles() == 1 && !collapsing_floor(scene).empty() &&
                      scene.run.coordinates == Coordinates::gaps;

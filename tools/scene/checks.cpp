@@ -28,7 +28,7 @@ void range_of_bins(const Checked& of, const char* key, const std::vector<Decimal
   const bin_float most = precise(ring->second) * bin_float(places);
   if (precise(range[1]) - precise(range[0]) > most)
     of.refuse(key, "bins longer than the ring", fmt::format("from {} to {}", range[0].text, range[1].text),
-              fmt::format("give a range of {:g} at most, or more bins", static_cast<double>(most)));
+              fmt::format("give a range of {} at most, or more bins", static_cast<double>(most)));
 }
 
 // Random speeds of thermal walls, displacements and averages are doubles in every working precision.
@@ -115,7 +115,7 @@ void places_are_on_a_length(const Checked& of) {
   if (precise(pairs.distance) > most)
     of.refuse("output.pair_distribution.distance",
               of.scene.initial.on_ring() ? "more than half of the ring" : "more than there is between the walls",
-              pairs.distance.text, fmt::format("give {:g} at most", static_cast<double>(most)));
+              pairs.distance.text, fmt::format("give {} at most", static_cast<double>(most)));
 }
 
 void numbers_fit(const Checked& of) {

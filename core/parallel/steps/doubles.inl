@@ -152,8 +152,8 @@ HWY_INLINE void collide(const StepLine& line, Local& l, const StepTask& task, st
     }
     to_right = to_left;
     if constexpr (unequal) {
-      const Four share = places.of(l.fraction), both = to_left + to_left, small = both * (share < 0 ? -share : share),
-                 large = both - small;
+      const Four share = places.of(l.fraction), part = share < 0 ? -share : share, both = to_left + to_left,
+                 rough = both * part, large = both - rough, small = part < 1. / 16 ? rough : both - large;
       to_left = share < 0 ? large : small, to_right = share < 0 ? small : large;
       put(places.of(l.reduced), l.struck_mass + k);
     }

@@ -129,8 +129,9 @@ template <StepLaw law, bool unequal> struct Pairs {
         const auto fraction = gather(high.fraction, low.fraction);
         const auto left_lighter = hn::Lt(fraction.high, zero.high);
         const auto handed = add(d, half, half);
-        const auto small = multiply(d, handed, select(left_lighter, negative(fraction), fraction));
-        const auto large = subtract(d, handed, small);
+        const auto share = select(left_lighter, negative(fraction), fraction), rough = multiply(d, handed, share);
+        const auto large = subtract(d, handed, rough);
+        const auto small = select(less(share, set(d, 1. / 16, 0)), rough, subtract(d, handed, large));
         to_left = select(left_lighter, large, small), to_right = select(left_lighter, small, large);
         share_lost = multiply(d, share_lost, gather(high.reduced, low.reduced));
       }

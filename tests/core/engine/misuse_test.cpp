@@ -55,6 +55,8 @@ TEST(Misuse, MassesAndSpeedsWhoseSumsAreOutOfRange) {
   for (const auto& all : slow)
     expect_refused([&] { ClusterChain<double>(all, 0.0); }, "the kinetic energy of all particles underflows",
                    "all its digits");
+  const auto light = list<double>({1e-150, 2e-150, 5e-150}, {1, 0, 0}, {1e-200, 1e-200, 1e-200});
+  expect_refused([&] { StickyGas<double>(light, 0.0); }, "the mass times the position", "all its digits");
   EXPECT_NO_THROW(ClusterChain<double>(list<double>({0, 1}, {0, 0}), 0.0));
   EXPECT_NO_THROW(ClusterChain<double>(list<double>({0, 1}, {1e-140, -1e-140}), 0.0));
   // The square of a momentum is not needed: masses of 1e200 at unit speeds are accepted.

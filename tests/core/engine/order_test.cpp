@@ -150,7 +150,7 @@ TEST(Touching, AWindowInSegmentsIsThatOfThePlainLoop) {
 
 // 2^30/3 - 1/10 is no double, and what is lost is not: at the next move it belongs to another local time.
 TEST(Touching, ALocalTimeAheadOfTheOriginLosesNothing) {
-  TimedGaps<double, Gap<double>, true> gaps(0, 1);
+  TimedGaps<double, Gap<double>> gaps(0, 1);
   gaps.resize(1);
   gaps.put(0, {{1, 0x1p30 / 3}, 1});
   const auto move = [&](double by) { gaps.move_origin(by, [](const auto& each) { each(0, 1); }); };

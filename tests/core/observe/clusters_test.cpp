@@ -43,6 +43,16 @@ TEST(Masses, BinsAreQuarterPowersOfTwo) {
   EXPECT_EQ(clusters[6], 1U);  // 2.83 <= 3 < 3.36
   EXPECT_EQ(clusters[9], 1U);  // 4.76 <= 5 < 5.66
   EXPECT_EQ(clusters[12], 1U);
+
+  // A thousand and 24 masses of 0.1 are 2^10 of the least mass, though their sum is rounded to less.
+  Configuration<double> one = five_clusters();
+  one.collided_from = 0, one.collided_to = 1;
+  one.m[0] = 0;
+  for (int k = 0; k < 1024; ++k) one.m[0] += 0.1;
+  EXPECT_LT(one.m[0], 102.4);
+  const auto found = mass_distribution(one, 0.1);
+  ASSERT_EQ(found.size(), 41U);
+  EXPECT_EQ(found[40], 1U);
 }
 
 // Right-movers placed such that u+ falls linearly from u0 at x = -2 to 0 at x = 2, and their mirror image: 2L = 4. Bins

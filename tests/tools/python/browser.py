@@ -98,10 +98,10 @@ class Browser:
         self.call("Emulation.setEmulatedMedia", media=media,
                   features=[{"name": "prefers-color-scheme", "value": scheme}])
 
-    def load(self, path):
-        """Opens a file from the disk and waits until it is whole."""
+    def load(self, place):
+        """Opens a file from the disk, or an address of a server, and waits until it is whole."""
         self.seen.clear()
-        self.call("Page.navigate", url="file://" + os.path.abspath(path))
+        self.call("Page.navigate", url=place if str(place).startswith("http:") else "file://" + os.path.abspath(place))
         while "Page.loadEventFired" not in self.seen:
             self.note(self.message())
 

@@ -1,10 +1,14 @@
 """The manual as a site: it is built without a warning, its links lead somewhere, it asks no network for anything, and
-a reader who opens it from a disk finds words with its search, on a telephone too. Skipped without MkDocs."""
+a reader finds words with its search, from a disk and from a server, on a telephone too. Skipped without MkDocs."""
+import functools
+import http.server
 import os
 import re
 import shutil
 import subprocess
 import tempfile
+import threading
+import time
 import unittest
 from pathlib import Path
 
@@ -27,6 +31,17 @@ TYPE = """(() => {
     for (const event of ['input', 'keyup']) field.dispatchEvent(new Event(event, {bubbles: true}));
   }
 })()"""
+TYPE_AT_ONCE = """(() => {
+  const letters = [...'%s'];
+  const type = setInterval(() => {
+    const field = document.querySelector('input[name=query]');
+    if (!field) return;
+    field.focus();
+    field.value += letters.shift();
+    for (const event of ['input', 'keyup']) field.dispatchEvent(new Event(event, {bubbles: true}));
+    if (!letters.length) clearInterval(type);
+  }, 100);
+})()"""
 FOUND = "Array.from(document.querySelectorAll('.md-search-result__link'), link => link.getAttribute('href'))"
 WIDTH = """(() => {
   const still = document.createElement('style');
@@ -47,6 +62,18 @@ def built(folder):
     if any(text in run.stdout for text in LACKING):
         return f"MkDocs without its theme or a plugin ({PACKAGES})"
     raise AssertionError(run.stdout)
+
+
+class SlowServer(http.server.SimpleHTTPRequestHandler):
+    """The worker of the search comes so late that a reader has typed a word before."""
+
+    def do_GET(self):
+        if "/workers/" in self.path:
+            time.sleep(2)
+        super().do_GET()
+
+    def log_message(self, *_):
+        pass
 
 
 class Site(unittest.TestCase):
@@ -105,6 +132,16 @@ class Site(unittest.TestCase):
                     self.assertIn(page, reader.until(FOUND + "[0]", 60), word)
             self.assertEqual(reader.complaints, [])
             self.assertEqual(reader.outside(), [])
+
+    @unittest.skipUnless(browser.find(), "no Chromium (Debian: chromium)")
+    def test_a_reader_who_types_before_the_page_is_whole_finds_it(self):
+        with (http.server.ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(SlowServer, directory=self.folder))
+              as server, browser.Browser() as reader):
+            threading.Thread(target=server.serve_forever).start()
+            self.addCleanup(server.shutdown)
+            reader.call("Page.addScriptToEvaluateOnNewDocument", source=TYPE_AT_ONCE % "collapse")
+            reader.load(f"http://127.0.0.1:{server.server_port}/index.html")
+            self.assertIn("how-to-trust", reader.until(FOUND + "[0]", 60))
 
     @unittest.skipUnless(browser.find(), "no Chromium (Debian: chromium)")
     def test_no_page_is_wider_than_the_window_or_a_telephone(self):

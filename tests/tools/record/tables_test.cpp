@@ -1,6 +1,8 @@
 // The tables of a scene are known before it runs, and a run writes exactly these.
 #include "cradle/tools/record/rows.hpp"
 
+#include <numeric>
+
 #include "cradle/tests/tools/cases.hpp"
 #include "cradle/tools/ensemble/layout.hpp"
 #include "cradle/tools/record/recorded.hpp"
@@ -57,6 +59,28 @@ TEST(RunTables, AreWhatARunWrites) {
     std::vector<std::string> written;
     for (const auto& [number, value] : run.summary) written.push_back(number);
     EXPECT_EQ(summary, written);
+  }
+}
+
+// Their bins begin and end at the outermost particles that have collided, whose places are rounded in several ways.
+TEST(Profiles, WithoutARangeHoldAllParticlesThatHaveCollided) {
+  for (const std::string law : {"{ type = 'inelastic', restitution = 0.99 }", "{ type = 'wet', loss = 0.01 }"}) {
+    const RunOutcome run = run_scene(
+        parse_scene("law = " + law +
+                        "\nrun.until = 60\ninitial = { type = 'rows', left = { particles = 100, speed = 0.5 }, "
+                        "right = { particles = 100, speed = -0.5 }, perturbation = 0.1 }\noutput = { series = "
+                        "{ every = 1 }, profiles = { times = { every = 1 }, bins = 7 } }",
+                    "s.toml"),
+        {Progress::Show::never});
+    const auto values = [&](const std::string& group, const std::string& column) {
+      return std::get<std::vector<double>>(run.result.find(group)->find(column)->values);
+    };
+    const auto& particles = std::get<std::vector<std::uint64_t>>(run.result.find("series")->find("particles")->values);
+    for (std::size_t t = 2; t <= 60; ++t) {
+      const std::string table = fmt::format("profiles/{:04}", t);
+      const std::vector<double> x = values(table, "x"), density = values(table, "density");
+      EXPECT_NEAR(std::accumulate(density.begin(), density.end(), 0.) * (x[1] - x[0]), particles[t], 1e-9) << law << t;
+    }
   }
 }
 

@@ -55,6 +55,15 @@ def last(table: Table, name: str):
     return column[-1].item() if column is not None and not isinstance(column, Table) and len(column) else None
 
 
+def errors_may_grow(scene: dict) -> bool:
+    """Whether errors may have grown that the estimate of right digits does not know (files.md, energy_digits)."""
+    initial, run, walls = scene["initial"], scene["run"], scene.get("walls", {}).values()
+    return ("gravity" in scene or any("temperature" in wall or "motion" in wall for wall in walls)
+            or scene["law"]["type"] != "inelastic"
+            or run.get("collapse") == "merge" or run.get("coordinates") == "absolute"
+            or "random_masses" in initial or any(mass != 1 for mass in initial.get("m", initial.get("masses", []))))
+
+
 def ends(result: Result) -> Entries:
     """The first and the last samples of the series of a run."""
     series = result.series
@@ -70,7 +79,8 @@ def ends(result: Result) -> Entries:
     digits = result.attributes.get("energy_digits")
     known = tag("estimated" if digits is not None and digits >= 1 else "unknown")
     about = "" if digits is None else " rounding, no digits" if digits < 1 else \
-        f" about {count_of(round(digits), 'digit')}, from rounding and the number of collisions"
+        f" about {count_of(round(digits), 'digit')}, from rounding and the number of collisions" + (
+            ", unless errors have grown (cradle trust)" if errors_may_grow(result.scene) else "")
     shown = number(energy, min(12, max(1, int(digits if digits is not None else 12))))
     yield END["energy"], valued(shown, "m l^2/t^2"), f"{known}{about}{share}"
     collisions, slow = last(series, "collisions"), last(series, "collisions_below_cutoff")

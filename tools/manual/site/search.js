@@ -1,8 +1,26 @@
-// A page that is opened from a disk may neither fetch the index of the search nor start a worker. There the index comes
-// as a script (written by pages.py), and the worker's script runs in a hidden frame. It starts when the reader goes to
-// the search, since the browser needs a moment to prepare the index. Until then a query finds nothing. It must be
-// answered, though: the theme waits for each answer and keeps only the last message meanwhile, so that the one with the
-// index would be lost. It sends the last query again once the index is there.
+// The search. What is typed before its index is there finds nothing, but must be answered: the theme waits for each
+// answer and keeps only the last message meanwhile, so that the one with the index would be lost. It sends the last
+// query again once the index is there.
+//
+// A page that is opened from a disk may neither fetch the index nor start a worker. There the index comes as a script
+// (written by pages.py), and the worker's script runs in a hidden frame. It starts when the reader goes to the search,
+// since the browser needs a moment to prepare the index.
+const [READY, QUERY, RESULT] = [1, 2, 3];  // kinds of messages
+const nothing = {type: RESULT, data: {items: []}};
+
+if (location.protocol !== "file:")
+  window.Worker = class extends Worker {
+    constructor(url) {
+      super(url);
+      this.addEventListener("message", ({data}) => this.ready ||= data.type === READY);
+    }
+
+    postMessage(data) {
+      if (this.ready || data.type !== QUERY) super.postMessage(data);
+      else queueMicrotask(() => this.dispatchEvent(new MessageEvent("message", {data: nothing})));
+    }
+  };
+
 if (location.protocol === "file:") {
   const index = new URL("search/search_index.js", document.currentScript.src);
   document.write(`<script src="${index}"><\/script>`);
@@ -36,8 +54,7 @@ if (location.protocol === "file:") {
     }
 
     postMessage(data) {
-      const query = 2, result = { type: 3, data: { items: [] } };
-      if (this.waiting && data.type === query) queueMicrotask(() => this.answer(result));
+      if (this.waiting && data.type === QUERY) queueMicrotask(() => this.answer(nothing));
       else if (this.waiting) this.waiting.push(data);
       else this.frame.contentWindow.dispatchEvent(new MessageEvent("message", {data}));
     }

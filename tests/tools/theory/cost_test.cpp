@@ -134,7 +134,7 @@ TEST(ExpectedCollisions, OnAFloorHaveNoPaceUnlessParticlesRestThere) {
   EXPECT_TRUE(expected_cost(scene_of(ball + "walls.left.position = 0")).predictable());
 }
 
-// Haff's law has the energy within 3 % until t = tau (free_cooling_test.cpp), the rate within half of that;
+// Haff's law has the energy within 3 % until t = tau (core/theory/classics_test.cpp), the rate within half of that;
 // correlations grow up to the time of clustering, where they are of order 1: their share of the collisions until a
 // quarter of it is below 1/16.
 TEST(ExpectedCollisions, OfACoolingGasEndWhereItClusters) {

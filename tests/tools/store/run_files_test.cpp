@@ -1,5 +1,5 @@
-// The files beside a result during its run, as users meet them: inspected, damaged, of another version, or of another
-// run that is in the way.
+// The files beside a result during its run: damaged, of another version, or of another run that is in the way.
+// (Inspected, and of runs that are killed: tests/tools/run/outputs.txt.)
 #include <thread>
 
 #include "cradle/tests/tools/faults.hpp"
@@ -17,9 +17,6 @@ namespace run_files_test {
 using namespace cradle::tests;
 using namespace cradle::tools;
 
-const std::string run = "cradle run fig2 --quiet --set initial.particles=1000 --set run.until=1300 --set "
-                        "output.checkpoint.every_seconds=0.05 ";
-
 class Files : public ProgramTest {
  protected:
   // The command is refused with this status and a message that begins so, after "cradle: ".
@@ -31,48 +28,11 @@ class Files : public ProgramTest {
     bytes.resize(bytes.size() - sizeof(std::uint64_t));
     return bytes + to_bytes(crc64(std::string_view(bytes).substr(first)));
   }
-
-  // Leaves a run that was killed, with its state, and what it would have come to: whole.h5. One that was over before is
-  // made again, twice as long, of twice as many particles: else they would have flown apart by then.
-  void kill_a_run() const {
-    for (int until = 1300;; until *= 2) {
-      const std::string size = std::to_string(until);
-      const std::string long_run = run + "--set run.until=" + size + " --set initial.particles=" + size + " -o ";
-      shell("rm -f a.h5*; " + long_run +
-            "a.h5 & pid=$!; until [ -e a.h5.checkpoint ] || [ -e a.h5 ]; do :; done; kill -9 $pid; wait $pid");
-      if (exists("a.h5") || !exists("a.h5.part")) continue;
-      shell(long_run + "whole.h5", 0);
-      return;
-    }
-  }
 };
 
 JournalHeader header() {
   const Scene scene = parse_scene("law.type = 'sticky'\ninitial.type = 'rows'\nrun.until = 10\n", "s.toml");
   return {"run", 7, effective_toml(scene), "s"};
-}
-
-TEST_F(Files, ARunInProgressCanBeInspected) {
-  const Printed inspected =
-      shell(endless_run("a.h5") + until_collisions("a.h5") +
-                "until cradle info a.h5.part >info && grep -q '^time.* of 1e+15' info; do sleep 0.1; done; cat info; "
-                "echo ---; cradle info a.h5.checkpoint; kill -9 $pid",
-            0);
-  for (const char* said : {"journal of a run", "\ntime  ", " of 1e+15", "\ncollisions  ", " so far\n", "\ncomputing  ",
-                           "\ncheckpoint  ", "/series", "energy_lost", "---\ncheckpoint of a run"})
-    EXPECT_TRUE(has(inspected.out, said)) << inspected.out;
-  EXPECT_FALSE(has(inspected.out, "not whole")) << "a journal that is being written has no torn end";
-}
-
-TEST_F(Files, FollowingARunEndsWithIt) {
-  // A run that ends takes its journal away. This one never does, so that following it begins in time on any machine.
-  const Printed followed =
-      shell(endless_run("a.h5") + until_collisions("a.h5") +
-                "cradle info --follow a.h5.part >printed & "
-                "follower=$!; while ! grep -q 'journal of a run' printed; do sleep 0.02; done; kill -9 $pid; "
-                "rm a.h5.part; wait $follower; status=$?; cat printed; (exit $status)",
-            0);
-  EXPECT_TRUE(has(followed.out, "a.h5.part is gone: the run is over")) << followed.out;
 }
 
 // What is beside FILE belongs to no run that is killed before it has written anything.
@@ -81,32 +41,6 @@ TEST_F(Files, ANewRunTakesTheJournalOfTheOneBeforeAway) {
   { const RunFiles files(path("a.h5"), parse_scene(header().scene, "s.toml")); }
   EXPECT_FALSE(exists("a.h5.part"));
   refused("resume a.h5", 4, "a.h5: nothing to continue from");
-}
-
-TEST_F(Files, AKilledRunIsGoneOnWithAndThenThereIsNothingToDo) {
-  kill_a_run();
-  shell("cradle resume a.h5.part", 0);  // any of the names
-  expect_same("a.h5", "whole.h5");
-  EXPECT_FALSE(exists("a.h5.part"));
-  EXPECT_TRUE(has(shell("cradle resume a.h5", 0).out, "nothing to do"));
-  refused("resume b.h5", 4, "b.h5: nothing to continue from");
-  for (const auto& [until, said] :
-       {std::pair("100", "before the end"), std::pair("soon", "not a number"),
-        std::pair("1e99", "too late for this run"), std::pair("1e400", "too late for this run")})
-    refused(std::string("resume a.h5 --until ") + until, 2, std::string("--until: ") + said);
-}
-
-TEST_F(Files, WithoutItsCheckpointARunStartsAnewAndWithADamagedOneItSaysSo) {
-  kill_a_run();
-  std::string state = contents(folder / "a.h5.checkpoint");
-  state[state.size() / 2] = static_cast<char>(state[state.size() / 2] ^ 4);
-  write("a.h5.checkpoint", state);
-  refused("resume a.h5", 4,
-          "a.h5.checkpoint: not a checkpoint, or damaged (found its checksum is wrong): remove it: the run then starts "
-          "anew");
-  std::filesystem::remove(folder / "a.h5.checkpoint");
-  shell("cradle resume a.h5", 0);
-  expect_same("a.h5", "whole.h5");
 }
 
 TEST_F(Files, OtherVersionsAreRefusedByName) {
@@ -129,7 +63,7 @@ TEST_F(Files, ARunThatIsNotFinishedIsNotThrownAwayByAnother) {
   for (const double seconds : {3.0, 3600.0}) {
     JournalWriter(path("a.h5.part"), header()).append(to_bytes(RunRecord(RunStatus{.seconds = seconds, .time = 5})));
     const std::string before = contents(folder / "a.h5.part");
-    const Printed other = shell(run + "-o a.h5", 2);
+    const Printed other = shell("cradle run fig5 --quiet -o a.h5", 2);
     EXPECT_TRUE(has(other.err, "a run of other settings that is not finished (found t = 5, ")) << other.err;
     EXPECT_TRUE(has(other.err, "continue with `cradle resume a.h5`, give another -o FILE, or --force to replace it"));
     EXPECT_TRUE(contents(folder / "a.h5.part") == before);
@@ -137,7 +71,7 @@ TEST_F(Files, ARunThatIsNotFinishedIsNotThrownAwayByAnother) {
   EXPECT_TRUE(has(refusal(Exit::bad_input, [&] { RunFiles(path("a.h5"), same); }),
                   "a run that is not finished (found t = 5, 3600 s of computing)"));
   shell("cradle resume a.h5", 0);
-  shell(run + "-o a.h5 --force", 0);
+  shell("cradle run fig5 --quiet -o a.h5 --force", 0);
   EXPECT_FALSE(exists("a.h5.part"));
 }
 

@@ -111,29 +111,6 @@ class Ensembles : public ProgramTest {
     return go_on;
   }
 
-  // The command gives the same file for any history of its replicas: on any number of threads, continued, split and
-  // merged in any order, with a gap that is filled later.
-  void expect_same_for_any_history(const std::string& command, std::uint64_t replicas) const {
-    SCOPED_TRACE(command);
-    const auto of = [&](std::uint64_t first, std::uint64_t end, const std::string& file, const std::string& more = "") {
-      run(fmt::format("{} --first {} --replicas {} -o {}{}", command, first, end - first, file, more));
-    };
-    shell("rm -f *.h5", 0);
-    of(0, replicas, "whole.h5", " --threads 1");
-    for (const std::string threads : {"2", "3", "8"}) {
-      of(0, replicas, "on-" + threads + ".h5", " --threads " + threads);
-      expect_same("whole.h5", "on-" + threads + ".h5");
-    }
-    const std::uint64_t third = replicas / 3;
-    of(0, third, "a.h5"), of(third, 2 * third + 1, "b.h5"), of(2 * third + 1, replicas, "c.h5");
-    run("merge a.h5 b.h5 c.h5 -o abc.h5");
-    run("merge c.h5 a.h5 -o ca.h5");
-    run("merge ca.h5 b.h5 -o cab.h5");
-    of(0, replicas, "a.h5");   // continued
-    of(0, replicas, "ca.h5");  // its gap is filled
-    for (const char* file : {"abc.h5", "cab.h5", "a.h5", "ca.h5"}) expect_same("whole.h5", file);
-  }
-
   // Of a column of real or of whole numbers.
   static std::vector<double> numbers(const Result& result, std::string_view group, std::string_view name) {
     const tools::Numbers& values = column(result, group, name).values;

@@ -1,13 +1,12 @@
 // What is overwritten of proofs whose precision was raised, and of studies that were forced and interrupted; of two
-// programs that write to one name the second is refused before it has done anything, at any time. (All else that is
-// replaced or not: tests/tools/outputs.txt.)
+// ensembles that write to one name the second is refused before it has done anything. (All else that is replaced or
+// not: tests/tools/outputs.txt; that nobody writes to the file of a run: tests/tools/run/outputs.txt.)
 #include "cradle/tools/setup/read_scene.hpp"
 #include "cradle/tools/store/overwrite.hpp"
 
 #include "cradle/tests/tools/ensemble/ensembles.hpp"
 #include "cradle/tools/ensemble/ensemble.hpp"
 #include "cradle/tools/result/writer.hpp"
-#include "cradle/tools/support/atomic_file.hpp"
 
 namespace cradle::tests::overwrite_test {
 
@@ -45,8 +44,6 @@ TEST_F(Overwriting, AForcedEnsembleCanBeResumed) {
   EXPECT_TRUE(has(attribute<std::string>(read("e.h5").attributes, "scene", "e.h5"), "restitution = 0.8"));
 }
 
-// ---- two writers
-
 // The second comes when the first one is about to run its first replica.
 TEST_F(Ensembles, SecondOfTwoThatBeginAfreshIsRefused) {
   struct First : OneProcess {
@@ -73,21 +70,6 @@ TEST_F(Ensembles, SecondOfTwoThatBeginAfreshIsRefused) {
   run("ensemble shock.toml --first 4 --replicas 4 -o a.h5");
   run("ensemble shock.toml --replicas 8 -o whole.h5");
   expect_same("whole.h5", "a.h5");
-}
-
-TEST_F(Ensembles, OneRunAtATimeWritesToAName) {
-  write("a.h5", "old");
-  write("a.h5.new", "another user's");
-  {
-    const FileClaim first(path("a.h5"));
-    for (const auto* command : {"run shock.toml -o a.h5", "trust shock.toml --digits 16,31 -o a.h5",
-                                "merge a.h5 a.h5 -o a.h5", "sweep shock.toml --vary law.cutoff=0,1 -o a.h5"})
-      EXPECT_TRUE(has(shell(std::string("cradle ") + command, 4).err, "a.h5: another program is writing this file"));
-    EXPECT_TRUE(contents(folder / "a.h5") == "old");
-  }
-  run("run shock.toml --quiet --force -o a.h5");
-  EXPECT_NE(read("a.h5").find("series"), nullptr);
-  EXPECT_EQ(contents(folder / "a.h5.new"), "another user's");
 }
 
 }  // namespace cradle::tests::overwrite_test

@@ -1,13 +1,17 @@
 // The files beside a result during its run: damaged, of another version, or of another run that is in the way.
-// (Inspected, and of runs that are killed: tests/tools/run/outputs.txt.)
+// (Inspected, of runs that are killed, that nobody else writes to them: tests/tools/run/outputs.txt.) What is
+// overwritten of proofs whose precision was raised, and of studies that were forced and interrupted; of two ensembles
+// that write to one name the second is refused before it has done anything. (All else that is replaced or not:
+// tests/tools/outputs.txt.)
 #include <thread>
 
+#include "cradle/tests/tools/ensemble/ensembles.hpp"
 #include "cradle/tests/tools/faults.hpp"
-#include "cradle/tests/tools/program.hpp"
+#include "cradle/tools/ensemble/ensemble.hpp"
 #include "cradle/tools/result/difference.hpp"
 #include "cradle/tools/result/growing_tables.hpp"
 #include "cradle/tools/result/writer.hpp"
-#include "cradle/tools/setup/read_scene.hpp"
+#include "cradle/tools/store/overwrite.hpp"
 #include "cradle/tools/store/run_files.hpp"
 #include "cradle/tools/support/bytes.hpp"
 #include "cradle/tools/support/version.hpp"
@@ -157,6 +161,68 @@ TEST_F(Files, PiecesMakeTheFileThatAllAtOnceMakes) {
   ASSERT_EQ(one.groups.size(), 4U);
   EXPECT_TRUE(differences(one, other, "pieces", "whole").found.empty());
   for (std::size_t k = 0; k < one.groups.size(); ++k) EXPECT_EQ(one.groups[k].name, other.groups[k].name);
+}
+
+// ---- what is overwritten
+
+using Overwriting = ProgramTest;
+
+constexpr const char* scene = "law = { type = 'inelastic', restitution = 0.9 }\nrun.until = 4\n"
+                              "initial = { type = 'rows', particles = 6, perturbation = 0.05 }\n";
+
+TEST_F(Overwriting, AProofWhosePrecisionWasRaisedIsMadeAgain) {
+  const Scene given = parse_scene(scene, "s.toml"), raised = parse_scene(scene, "s.toml", {"run.precision=float128"});
+  Result result{{{"scene", effective_toml(raised)}, {"name", "s"}, {"precision", precision_name(raised.run)}}, {}};
+  result.attributes.insert(result.attributes.begin(), {"format_version", std::uint64_t{2}});
+  say_how_made(result, "certify", given);
+  write_result(result, path("proof.h5"));
+  check_overwrite(path("proof.h5"), "certify", &given, Force::no);
+  EXPECT_TRUE(has(refusal(Exit::bad_input, [&] { check_overwrite(path("proof.h5"), "certify", &raised, Force::no); }),
+                  "another command (found cradle certify --set 'run.precision=double', here certify)"));
+}
+
+// A forced study that was interrupted continues; its journal says that it replaces what is there.
+TEST_F(Overwriting, AForcedEnsembleCanBeResumed) {
+  write("s.toml", scene);
+  shell("cradle ensemble s.toml --replicas 2 -o e.h5", 0);
+  const Study other = ensemble_of(parse_scene(scene, "s.toml", {"law.restitution=0.8"}));
+  {
+    EnsembleStore store(other, path("e.h5"));
+    store.load(Force::yes);
+    store.start_journal(0, {0, 3}, 1 << 20);
+  }
+  EXPECT_TRUE(exists("e.h5.part"));
+  shell("cradle resume e.h5", 0);
+  EXPECT_EQ(attribute<std::uint64_t>(read("e.h5").attributes, "replicas", "e.h5"), 3U);
+  EXPECT_TRUE(has(attribute<std::string>(read("e.h5").attributes, "scene", "e.h5"), "restitution = 0.8"));
+}
+
+// The second comes when the first one is about to run its first replica.
+TEST_F(Ensembles, SecondOfTwoThatBeginAfreshIsRefused) {
+  struct First : OneProcess {
+    using OneProcess::OneProcess;
+    int share(const std::vector<JobRange>& jobs, const std::function<void(const NextJob&)>& work,
+              const std::function<void(std::uint64_t)>& others_took) override {
+      begun();
+      return OneProcess::share(jobs, work, others_took);
+    }
+    std::function<void()> begun;
+  };
+  Printed second{-1, "", ""};
+  Interrupt interrupt;
+  First first(interrupt);
+  first.begun = [&] {
+    EXPECT_FALSE(exists("a.h5"));
+    second = shell("cradle ensemble shock.toml --first 4 --replicas 4 -o a.h5");
+  };
+  const EnsembleOptions options{.replicas = {0, 4}, .progress = ProgressLine::Show::never};
+  EXPECT_EQ(run_study(ensemble_of(scene("shock.toml")), options, path("a.h5"), first).status, Exit::done);
+  EXPECT_EQ(second.status, 4);
+  EXPECT_TRUE(begins(second.err, "cradle: a.h5: another program is writing this file (found process "));
+  // It comes again when the first one is done: nothing is lost.
+  run("ensemble shock.toml --first 4 --replicas 4 -o a.h5");
+  run("ensemble shock.toml --replicas 8 -o whole.h5");
+  expect_same("whole.h5", "a.h5");
 }
 
 }  // namespace run_files_test

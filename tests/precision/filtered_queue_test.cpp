@@ -2,10 +2,11 @@
 // every collision of a run is the one that a search of all gaps finds, by the least (exact time, position), at that
 // time to the last bit: in collapses, in shocks, in crowds and lattices, where many collisions are simultaneous, and
 // under the wet law, where particles pass, merge and stream in. The number of index bits in a key changes no bit of a
-// run. (A loop without a queue, from the start: random_scenes_test.cpp.)
+// run; nor do segments, in these types, whose losses are summed up gap by gap, and with MPFR's working precision, one
+// value per process set before the threads start. (A loop without a queue, from the start: random_scenes_test.cpp. Runs
+// at once: tests/tools/ensemble/outputs.txt.)
 #include "cradle/core/chains/cluster_chain.hpp"
-#include "cradle/tests/core/compare.hpp"
-#include "cradle/tests/core/fixtures.hpp"
+#include "cradle/tests/core/segmented.hpp"
 #include "cradle/tests/core/slow_loop.hpp"
 #include "cradle/tests/precision/every_scalar.hpp"
 
@@ -104,6 +105,37 @@ PRECISION_TEST(FilteredQueue, IndexBitsChangeNoBit) {
   // Where times are equal.
   EXPECT_GT(expect_index_bits_change_no_bit<Chain>(lattice_rows<T>(40), Inelastic<T>(most, zero), T(2), 8), 0U);
   EXPECT_GT(expect_index_bits_change_no_bit<Chain>(crowds<T>(60, 5), Inelastic<T>(T(1), zero), T(2), 20), 0U);
+}
+
+// ---- one run on several threads
+
+PRECISION_SUITE(WideThreads, WidePrecision);
+
+template <class T, class Masses> void expect_same_gaps(const Scene<T>& scene, const std::vector<T>& times) {
+  SlabsMade all;
+  for (const Inelastic<T>& law :
+       {Inelastic<T>(T(999) / T(1000), T(1) / T(100000)), Inelastic<T>(T(3) / T(10), T(1) / T(2))})
+    for (const SegmentsAs& as : {SegmentsAs{{.gaps = 40, .ghosts = 4, .collisions = 4, .anywhere = true}, 2},
+                                 SegmentsAs{{.gaps = 150, .ghosts = 48, .anywhere = true}, 3}})
+      all += expect_same_in_segments<GapChain<T, Masses>>(scene, law, {as}, times);
+  EXPECT_GT(all.slabs, 10U);
+  EXPECT_GT(all.again, 0U);
+}
+
+PRECISION_TEST(WideThreads, SegmentsOfRowsThatAreStreamedOfGasesOnARingAndOnALine) {
+  expect_same_gaps<T, IdenticalMasses<T>>(rshock<T>(1200), {T(500), T(520)});
+  expect_same_gaps<T, IdenticalMasses<T>>(gas<T>(600, T(600)), {T(5), T(25)});
+  expect_same_gaps<T, IndividualMasses<T>>(gas<T>(700, T(0), true), {T(10), T(80)});
+}
+
+// Wet and sticky: particles merge, and with them what their gaps have lost.
+PRECISION_TEST(WideThreads, SegmentsOfParticlesThatMergeOnARing) {
+  const SegmentsAs as{{.gaps = 40, .ghosts = 8, .collisions = 4, .anywhere = true}, 2};
+  const Scene<T> scene = gas<T>(600, T(600), true);
+  SlabsMade made = expect_same_in_segments<ClusterChain<T>>(scene, Wet<T>(T(1) / T(50)), {as}, {T(5), T(40)});
+  made += expect_same_in_segments<ClusterChain<T>>(scene, Sticky<T>(), {as}, {T(5), T(40)});
+  EXPECT_GT(made.slabs, 10U);
+  EXPECT_GT(made.again, 0U);
 }
 
 }  // namespace cradle::test::filtered_queue_test

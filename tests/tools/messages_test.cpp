@@ -168,6 +168,7 @@ constexpr auto name_of = [](const auto& inputs) { return inputs.param.name; };
 INSTANTIATE_TEST_SUITE_P(Input, Answers, testing::ValuesIn(inputs_in("messages.txt")), name_of);
 INSTANTIATE_TEST_SUITE_P(Output, Answers, testing::ValuesIn(inputs_in("outputs.txt")), name_of);
 INSTANTIATE_TEST_SUITE_P(OutputOfRuns, Answers, testing::ValuesIn(inputs_in("run/outputs.txt")), name_of);
+INSTANTIATE_TEST_SUITE_P(OutputOfRanks, Answers, testing::ValuesIn(inputs_in("ensemble/outputs.txt")), name_of);
 
 // The texts between quotes in a source of the program, those that follow each other as one.
 std::string texts(const std::string& source) {

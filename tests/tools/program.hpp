@@ -116,18 +116,4 @@ std::vector<T> numbers(const tools::Result& result, std::string_view group, std:
   return std::get<std::vector<T>>(column(result, group, name).values);
 }
 
-// A run that never ends by itself, on any machine, for tests that interrupt it: it would make 1e18 collisions. It saves
-// its state ten times a second.
-inline std::string endless_run(const std::string& file) {
-  return "cradle run cooling --quiet --set law.type=inelastic --set law.restitution=1 --set initial.particles=2000 "
-         "--set run.until=1e15 --set output.checkpoint.every_seconds=0.1 -o " +
-         file;
-}
-
-// Puts the command before it in the background ($pid) and waits until its saved state has collisions.
-inline std::string until_collisions(const std::string& file) {
-  return " & pid=$!; until cradle info " + file +
-         ".checkpoint 2>.not-yet | grep -q ', [1-9][0-9]* collisions'; do sleep 0.01; done; ";
-}
-
 }  // namespace cradle::tests

@@ -124,7 +124,7 @@ TEST(Properties, GapsAndPositionsMakeTheSameCollisions) {
 
 // ---- closure where particles merge or pass: it is measured while both rows have particles that have not collided,
 // whose flights are known, and on a ring; later there is no number. (That it is 0 in exact arithmetic:
-// precision/exact_gas_test.cpp; that positions and sticky gases have none: tools/run/run_test.cpp.)
+// precision/exact_gas_test.cpp; that positions and sticky gases have none: tools/run/outputs.txt.)
 
 // The distance of the outermost particles seen minus the sum of the gaps between, in long double: as velocities are 1/2
 // and times short, the places are exact in it, and n gaps add up to n/2 units of 2^-64 times their sum.

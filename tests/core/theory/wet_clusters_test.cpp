@@ -1,8 +1,8 @@
 // The two heaviest clusters in the force of the wet zone, equation (16), and its simple version (17).
 // Proves: the integrated motion is that of closed forms (constant mass: parabolas of known period; growing mass:
 // flights with a logarithm) to its tolerance, although the force jumps; energy in the zone at constant mass; what
-// happens where the clusters meet; that samples, order and mirror images change nothing. (Oscillations in the zone and
-// the exponents of (17): tools/run/clusters_test.cpp.)
+// happens where the clusters meet; that order and mirror images change nothing. (Oscillations in the zone and the
+// exponents of (17): tools/run/clusters_test.cpp; that samples change nothing: tests/tools/run/outputs.txt.)
 #include "cradle/core/theory/wet_clusters.hpp"
 
 #include <boost/math/quadrature/gauss_kronrod.hpp>
@@ -223,24 +223,6 @@ TEST(ClusterMeeting, SampleAtTheMeetingIsTheStateAfterIt) {
   again.advance(run.meetings()[0].time);
   EXPECT_FALSE(again.second());
   EXPECT_EQ(again.first().v, 0);
-}
-
-// ---- determinism ----
-
-TEST(WetClusters, SamplesChangeNothing) {
-  const auto start = [&] {
-    return in_the_papers_zone(Meeting::pass, {-0.8 * edge, 0.05, 0.45}, {0.9 * edge, 0, 0.55});
-  };
-  auto often = start(), once = start();
-  for (int k = 1; k <= 50000; ++k) often.advance(k * 0.1);
-  once.advance(5000);
-  const Cluster a = often.first(), b = once.first();
-  EXPECT_EQ(a.x, b.x);
-  EXPECT_EQ(a.v, b.v);
-  ASSERT_EQ(often.meetings().size(), once.meetings().size());
-  EXPECT_GT(once.meetings().size(), 3U);
-  for (std::size_t k = 0; k < once.meetings().size(); ++k)
-    EXPECT_EQ(often.meetings()[k].time, once.meetings()[k].time) << k;
 }
 
 TEST(WetClusters, MirrorImageIsTheSame) {

@@ -1,9 +1,12 @@
 // The numbers in files of ensembles: statistics compared with those of single runs, how replicas ended, replicas that
-// collapse. (Those that fail, what every replica records: tests/tools/outputs.txt.)
+// collapse; the points that texts of sweeps describe, and the table of a small sweep, compared with runs made one by
+// one. (Replicas that fail, what every one records: tests/tools/outputs.txt. Texts that are refused:
+// tests/tools/messages.txt.)
 #include <numeric>
 
 #include "cradle/tests/tools/ensemble/ensembles.hpp"
 #include "cradle/tools/ensemble/replica_run.hpp"
+#include "cradle/tools/ensemble/study.hpp"
 #include "cradle/tools/support/bytes.hpp"
 
 namespace cradle::tests::ensemble_test {
@@ -127,7 +130,7 @@ TEST_F(Ensembles, ValuesAreCountedInBinsWhereRequested) {
 
 TEST_F(Ensembles, AMessageOfSeveralLinesIsOneLineOfTheFile) {
   tools::EnsembleRecord record;
-  tools::EnsembleState("", scene("failing.toml"), {}).put_failure(record, 0, "two\nlines");
+  tools::EnsembleState("", scene("shock.toml"), {}).put_failure(record, 0, "two\nlines");
   EXPECT_EQ(record.messages.at(0), "two lines");
 }
 
@@ -163,6 +166,79 @@ TEST_F(Ensembles, ReplicasThatBeginARunAgainAreRunsOfTheirOwn) {
     EXPECT_TRUE(again.messages.empty()) << text;
     EXPECT_TRUE(tools::to_bytes(again) == tools::to_bytes(alone)) << text;
   }
+}
+
+// ---- sweeps
+
+using tools::Sweep;
+using tools::sweep_points;
+
+Sweep of(std::vector<std::string> vary, bool cuts = false, std::vector<std::string> points = {}) {
+  Sweep sweep;
+  sweep.vary = std::move(vary), sweep.cuts = cuts, sweep.points = std::move(points);
+  return sweep;
+}
+
+// Even ones keep their ends as they are written; several keys combine, or are varied one by one.
+TEST(SweepPoints, AreThoseOfTheTexts) {
+  const std::vector<std::string> two{"law.loss=0.1,0.2", "initial.speed=1:3:3"};
+  const std::pair<Sweep, std::string> rows[] = {
+      {of({"law.loss=0.1:0.5:5"}), "law.loss=0.1 | law.loss=0.2 | law.loss=0.3 | law.loss=0.4 | law.loss=0.5"},
+      {of({"law.loss=1e-3:1e1:5:log"}), "law.loss=1e-3 | law.loss=0.01 | law.loss=0.1 | law.loss=1 | law.loss=1e1"},
+      {of(two), "law.loss=0.1 initial.speed=1 | law.loss=0.1 initial.speed=2 | law.loss=0.1 initial.speed=3 | "
+                "law.loss=0.2 initial.speed=1 | law.loss=0.2 initial.speed=2 | law.loss=0.2 initial.speed=3"},
+      {of(two, true), "law.loss=0.1 | law.loss=0.2 | initial.speed=1 | initial.speed=2 | initial.speed=3"},
+      {of({}, false, {"law.type=wet law.loss=0.3", "law.type=sticky"}), "law.type=wet law.loss=0.3 | law.type=sticky"}};
+  for (const auto& [sweep, wanted] : rows) {
+    std::vector<std::string> points;
+    for (const tools::SweepPoint& point : sweep_points(sweep))
+      points.push_back(fmt::format("{}", fmt::join(point, " ")));
+    EXPECT_EQ(fmt::format("{}", fmt::join(points, " | ")), wanted);
+  }
+}
+
+// Found by fuzzing: with a million for a thousand, many keys of so many values each were written out before they were
+// counted.
+TEST(SweepPoints, AreCountedBeforeMemoryForThemIsTaken) {
+  const auto refused = [](const Sweep& sweep) { return refusal(Exit::bad_input, [&] { sweep_points(sweep, 1000); }); };
+  const std::vector<std::string> nine(9, "law.loss=1:2:1000");  // of which the first two are too many
+  EXPECT_TRUE(has(refused(of(nine)), "too many points (found 1e+06)"));
+  EXPECT_TRUE(has(refused(of(nine, true)), "too many points (found 2e+03)"));
+  std::vector<std::string> of_one_value(8, "law.type=wet");  // in each of the points
+  of_one_value.emplace_back("law.loss=1:2:1000");
+  EXPECT_TRUE(has(refused(of(of_one_value)), "too many values (found 9e+03 in all points)"));
+  EXPECT_EQ(sweep_points(of({"law.loss=1:2:3", "initial.seed=1:3:3"}), 9).size(), 9U);
+  EXPECT_THROW(sweep_points(of({"law.loss=1:2:3", "initial.seed=1:3:3"}), 8), tools::Error);
+}
+
+using SweepCommand = ProgramTest;
+
+TEST_F(SweepCommand, TableIsTheMeanOfTheRuns) {
+  const std::string scene = "fig7 --set initial.particles=200 --set run.until=60 --set output.zone.from=20 "
+                            "--set output.series.points=3 ";
+  const std::string command = "cradle sweep " + scene + "--vary law.loss=0.01,0.02 --replicas 3 --quiet -o sweep.h5";
+  shell(command, 0);
+  const Result result = read("sweep.h5");
+  EXPECT_EQ(numbers(result, "sweep", "law.loss"), (std::vector<double>{0.01, 0.02}));
+  EXPECT_EQ(numbers(result, "sweep", "replicas"), (std::vector<double>{3, 3}));
+  double sum = 0, squares = 0;
+  for (const int replica : {0, 1, 2}) {
+    const std::string number = std::to_string(replica);
+    shell("cradle run " + scene + "--set law.loss=0.02 --set initial.replica=" + number + " --quiet --force -o one.h5",
+          0);
+    const double energy = numbers(read("one.h5"), "series", "energy").back();
+    sum += energy, squares += energy * energy;
+  }
+  // Rounding of sums of energies of order 25.
+  EXPECT_NEAR(numbers(result, "sweep", "energy")[1], sum / 3, 1e-13);
+  EXPECT_NEAR(numbers(result, "sweep", "energy_error")[1], std::sqrt((squares - sum * sum / 3) / 6), 1e-6);
+  // The points are ensembles; the same command finds nothing left to do, another sweep is refused.
+  EXPECT_NE(result.find("points/0001/replicas"), nullptr);
+  const auto before = contents(path("sweep.h5"));
+  shell(command, 0);
+  EXPECT_EQ(contents(path("sweep.h5")), before);
+  shell("cradle sweep " + scene + "--vary law.loss=0.01,0.03 --replicas 3 --quiet -o sweep.h5", 2);
+  shell("cradle sweep " + scene + "--vary law.los=0.01,0.03 --quiet -o other.h5", 2);
 }
 
 }  // namespace cradle::tests::ensemble_test

@@ -1,27 +1,12 @@
-// An ensemble gives the same file for any history: on any number of threads, continued, split and merged, interrupted,
-// killed, with damaged or left-over journals. (What is refused: tests/tools/messages.txt.)
+// An ensemble gives the same file for any history: interrupted, killed, with damaged or left-over journals. (On any
+// number of threads and ranks, split and merged: tests/tools/ensemble/outputs.txt. What is refused:
+// tests/tools/messages.txt.)
 
 #include "cradle/core/ensemble/executor.hpp"
 #include "cradle/tests/tools/ensemble/ensembles.hpp"
 #include "cradle/tools/ensemble/ensemble.hpp"
 
 namespace cradle::tests::same_bytes_test {
-
-TEST_F(Ensembles, SameBytesForAnyHistory) {
-  expect_same_for_any_history("ensemble shock.toml", 60);
-  expect_same_for_any_history("ensemble shock.toml --spread energy=0:40:4000 --spread profiles/0000/density=0:4:8", 25);
-  expect_same_for_any_history("ensemble shock.toml --set output.every_replica=true", 12);
-  expect_same_for_any_history("ensemble collapse.toml", 40);
-  expect_same_for_any_history("ensemble falling.toml", 30);
-  for (const std::string precision : {"'long double'", "double-double", "cpp_bin_float", "mpfr --set run.digits=40"})
-    expect_same_for_any_history("ensemble shock.toml --set initial.particles=60 --set run.until=50 --set "
-                                "output.profiles.times=[] --set run.precision=" +
-                                    precision,
-                                6);
-  expect_same_for_any_history("sweep fig7 --set initial.particles=200 --set run.until=30 --set output.zone.from=20 "
-                              "--vary law.loss=0.01,0.02,0.03",
-                              7);
-}
 
 TEST_F(Ensembles, KilledAndContinuedIsTheSameAsInOneGo) {
   for (int kill = 0; kill < 3; ++kill) {

@@ -1,5 +1,5 @@
-// How runs end. Every run ends, or advances in time. A ball that falls on an inelastic floor collapses at a known time,
-// in every type and in all coordinates. (What a run advises at its end is followed in outputs.txt.)
+// How runs end: every run ends, or advances in time. (Balls that collapse on floors, and what runs advise at their
+// ends: outputs.txt.)
 //
 // Random scenes with floors, shaken walls, rows, lists and rings, with every collapse policy: CRADLE_ENDINGS=500 makes
 // it more.
@@ -13,90 +13,9 @@ namespace cradle::tests::endings_test {
 
 using namespace tools;
 
-class Endings : public ProgramTest {
- protected:
-  // Dropped from h on a floor of restitution r, it comes to rest at sqrt(2 h/g) (1 + r)/(1 - r).
-  void write_ball(const std::string& x = "[37]", const std::string& v = "[0]") const {
-    write("ball.toml", "law = { type = 'inelastic', restitution = 0.7 }\ngravity.acceleration = -9.81\n"
-                       "walls.left = { position = 0, restitution = 0.7 }\nrun.until = 30\n"
-                       "initial = { type = 'list', x = " +
-                           x + ", v = " + v + " }\n");
-  }
-  Printed run(const std::string& scene, const std::string& more, int status) const {
-    return shell("timeout 60 cradle run " + scene + " --quiet --force -o end.h5 " + more, status);
-  }
-  double of_collapse(const char* name) const {
-    return tools::attribute<double>(read("end.h5").find("collapse")->attributes, name, "");
-  }
-};
+using Endings = ProgramTest;
 
-constexpr double at_rest = 15.5635628146137;
-
-TEST_F(Endings, AStopGapEndsACollapseOnAFloor) {
-  write_ball();
-  for (const char* type : {"double", "double-double", "mpfr"})
-    for (const char* coordinates : {"gaps", "absolute"})
-      for (const double gap : {1e-6, 1e-12, 1e-300}) {
-        const std::string set = fmt::format("--set run.precision={} --set run.coordinates={} --set run.stop_gap={}",
-                                            type, coordinates, gap);
-        SCOPED_TRACE(set);
-        const Printed end = run("ball.toml", set, 3);
-        EXPECT_TRUE(has(end.out, "between the left wall and particle 0")) << end.out;
-        // The flights left out last 4 sqrt(2 h/g)/(1 - r) in all, for heights below the gap: with r = 0.7, 7 sqrt(h).
-        EXPECT_NEAR(of_collapse("time"), at_rest, 7 * std::sqrt(gap) + 1e-13);
-        EXPECT_LT(of_collapse("gap"), gap);
-      }
-  write_ball("[37, 80]", "[0, 0]");
-  run("ball.toml", "--set run.stop_gap=1e-12", 3);
-}
-
-TEST_F(Endings, TheEnergyAtTheEndIsThatAfterTheLastCollision) {
-  write_ball();
-  run("ball.toml", "--set run.stop_gap=1e-28 --set output.snapshots=[]", 3);
-  const tools::Result result = read("end.h5");
-  EXPECT_EQ(numbers(result, "snapshots/0000", "x").back(), 0);
-  EXPECT_EQ(numbers(result, "series", "potential_energy").back(), 0);
-  const auto n = static_cast<double>(numbers<std::uint64_t>(result, "series", "collisions").back());
-  const double energy = 9.81 * 37 * std::pow(0.49, n);  // each of n factors is rounded
-  EXPECT_NEAR(numbers(result, "series", "energy").back(), energy, 1e-13 * n * energy);
-}
-
-// A floor on which flights become too short for positions to resolve: the ball stays on it.
-TEST_F(Endings, NoBallFallsThroughAFloorInPositions) {
-  write("floor.toml", "law = { type = 'inelastic', restitution = 0.5 }\ngravity.acceleration = -1\n"
-                      "walls.left = { position = 0, restitution = 0.3, speed = -0.05 }\nrun.until = 20\n"
-                      "initial = { type = 'list', x = [1], v = [0] }\nrun.coordinates = 'absolute'\n");
-  for (const char* more :
-       {"", "--set walls.left.speed=0 --set walls.left.motion=sine",
-        "--set walls.left.speed=0 --set walls.left.motion=parabola",
-        "--set walls.left.speed=0 --set walls.left.motion=sawtooth --set run.precision=double-double"}) {
-    const bool shaken = has(more, "motion");
-    const std::string set =
-        std::string(more) + (shaken ? " --set walls.left.amplitude=0.01 --set walls.left.frequency=1" : "");
-    SCOPED_TRACE(set);
-    const Printed end = run("floor.toml", set, 5);
-    EXPECT_TRUE(has(end.err, "resolution exhausted")) << end.err;
-    const double x = numbers(read("end.h5"), "snapshots/0000", "x").back(),
-                 t = numbers(read("end.h5"), "series", "time").back();
-    EXPECT_NEAR(x, shaken ? 0 : -0.05 * t, shaken ? 0.0100001 : 1e-12);
-    if (!shaken) {
-      EXPECT_NEAR(t, 2.678, 1e-3);
-    }
-    run("floor.toml", set + " --set run.coordinates=gaps --set walls.left.rest_speed=1e-6", 0);
-  }
-}
-
-// Three light particles collapse on a shaken floor, and positions resolve it no more.
-TEST_F(Endings, NoMachineIsBlamedForWhatPositionsDoNotResolve) {
-  write("light.toml", "law = { type = 'inelastic', restitution = 0.5 }\ngravity.acceleration = -9.81\n"
-                      "walls.left = { position = 0, restitution = 0.9, motion = 'sawtooth', amplitude = 1.38, "
-                      "frequency = 1 }\nrun = { until = 5, coordinates = 'absolute' }\noutput.series.points = 2\n"
-                      "[initial]\ntype = 'list'\nx = [1.5917767517736003, 2.5121005053009196, 3.2588909230667196]\n"
-                      "v = [0.4039078223793515, 0.4791866190943306, 0.7572508058793073]\n"
-                      "m = [1.058586928910443e-5, 5.389717704708046e-5, 2.0298264508275672e-5]\n");
-  const Printed end = run("light.toml", "", 5);
-  EXPECT_FALSE(has(end.err, "at fault")) << end.err;
-  EXPECT_TRUE(has(end.err, "run.coordinates = \"gaps\"")) << end.err;
+TEST(GuardMessages, BlameNoMachineForWhatPositionsDoNotResolve) {
   tools::Run positions;
   positions.coordinates = Coordinates::absolute;
   Account<Number> unresolved;

@@ -1,5 +1,5 @@
 // Signals: the first one ends a run, which keeps its results; a second one ends the program at once; nothing else
-// changes.
+// changes. (Of the program: tests/tools/run/outputs.txt.)
 #include "cradle/tools/setup/read_scene.hpp"
 #include "cradle/tools/support/interrupt.hpp"
 
@@ -8,7 +8,8 @@
 #include <csignal>
 #include <thread>
 
-#include "cradle/tests/tools/program.hpp"
+#include <gtest/gtest.h>
+
 #include "cradle/tools/run/run.hpp"
 
 namespace cradle::tests::interrupt_test {
@@ -81,55 +82,6 @@ class HangUpsNotIgnored {
  private:
   struct sigaction before_ = {};
 };
-
-class Signals : public ProgramTest {
- private:
-  HangUpsNotIgnored hang_ups_not_ignored_;
-};
-
-TEST_F(Signals, KeepWhatARunHas) {
-  for (const auto& [signal, status] :
-       {std::pair("INT", 130), std::pair("TERM", 143), std::pair("USR1", 143), std::pair("HUP", 143)}) {
-    const Printed run =
-        shell(endless_run("long.h5") + until_collisions("long.h5") + "kill -" + signal + " $pid; wait $pid");
-    EXPECT_EQ(run.status, status) << signal << run.err;
-    EXPECT_FALSE(exists("long.h5"));
-    EXPECT_TRUE(has(run.err, "`cradle resume long.h5` continues from there"));
-    const Printed state = shell("cradle info long.h5.checkpoint", 0);
-    EXPECT_FALSE(has(state.out, " 0 collisions"));
-    shell("cradle info long.h5.part", 0);
-    shell("rm long.h5.part long.h5.checkpoint", 0);
-  }
-}
-
-TEST_F(Signals, HangUpsAreIgnoredUnderNohup) {
-  // It continues to keep its state, and ends by the next signal.
-  const Printed run =
-      shell("nohup " + endless_run("a.h5") + until_collisions("a.h5") +
-            "kill -HUP $pid; rm a.h5.checkpoint; until [ -e a.h5.checkpoint ]; do sleep 0.01; done; kill -INT $pid; "
-            "wait $pid");
-  EXPECT_EQ(run.status, 130) << run.err;
-}
-
-TEST_F(Signals, EndAProgramThatIsStillSettingUp) {
-  // 2e9 velocities are drawn twice before there is anything to hold in memory.
-  const Printed run = shell("cradle run cooling --set initial.particles=2e9 -o ring.h5 & pid=$!; "
-                            "until [ -e .ring.h5.cradle-lock ]; do sleep 0.01; done; kill -INT $pid; wait $pid",
-                            130);
-  EXPECT_TRUE(has(run.err, "before there was anything to keep"));
-  for (const char* file : {"ring.h5.part", "ring.h5.checkpoint"}) EXPECT_FALSE(exists(file)) << file;
-}
-
-TEST_F(Signals, EndACommandThatPollsForNone) {
-  for (const char* signal : {"USR1", "HUP"}) {
-    const Printed search = shell(std::string("cradle words 6 --search 12 -o y.h5 >out & pid=$!; until [ -e "
-                                             ".y.h5.cradle-lock ]; do sleep 0.01; done; kill -") +
-                                     signal + " $pid; wait $pid",
-                                 143);
-    EXPECT_TRUE(has(search.err, "cradle: interrupted")) << search.err;
-    shell("rm -f .y.h5.cradle-lock", 0);
-  }
-}
 
 // In a process of its own that has polled for signals and gets some: how soon after the first one another counts as the
 // same decides, not how soon they come here.

@@ -1,8 +1,10 @@
 // The program from scene to file: the Fig. 2 shock from a list of particles against counts of an independent
 // event-driven N-particle program (identical in double, binary128 and 100 digits). How often a run is sampled changes
 // only the series: every other number in a result file, attributes included, has the same bits. This includes lattices,
-// with very many simultaneous collisions, for which the order of events is hardest to keep. (The three-particle
-// collapse against its closed form, and that two runs give the same bytes: tests/tools/run/outputs.txt.)
+// with very many simultaneous collisions, for which the order of events is hardest to keep. With gravity and shaken
+// walls the account of energy in a result balances, with balls that rest on a floor too. (The three-particle collapse
+// against its closed form, free fall, that two runs and any number of threads give the same bytes:
+// tests/tools/run/outputs.txt.)
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/tools/cases.hpp"
 #include "cradle/tools/result/difference.hpp"
@@ -55,48 +57,6 @@ TEST_F(Run, ACheckOfALoadedStateDoesNotPutOffTheNextOne) {
   EXPECT_GT(guards.status(9).gap_min, 0) << "all particles were looked at";
 }
 
-// What nothing measures is not written: not as 0 either.
-TEST_F(Run, ClosureErrorsAreWrittenWhereTheyAreMeasured) {
-  const auto written = [&](const std::string& law, const std::string& more, const char* name) {
-    const auto result = result_of("[law]\n" + law + "\n[initial]\ntype = \"rows\"\nparticles = 2000\n" +
-                                  "perturbation = 0.05\n[run]\n" + more + "until = 500\n[output]\nsnapshots = [300]\n");
-    const auto* found = tools::find_attribute<double>(result.find("snapshots/0000")->attributes, name);
-    return found != nullptr ? std::optional(*found) : std::nullopt;
-  };
-  const std::string dry = "type = \"inelastic\"\nrestitution = 0.999\ncutoff = 1e-5",
-                    wet = "type = \"wet\"\nloss = 0.05";
-  EXPECT_NE(written(dry, "", "closure_gap").value_or(0), 0);
-  EXPECT_TRUE(written(dry, "", "closure_speed"));
-  EXPECT_NE(written(wet, "", "closure_gap").value_or(0), 0);
-  EXPECT_FALSE(written(wet, "", "closure_speed"));
-  for (const char* name : {"closure_gap", "closure_speed"}) {
-    EXPECT_FALSE(written("type = \"sticky\"", "", name)) << name;
-    EXPECT_FALSE(written(dry, "coordinates = \"absolute\"\n", name)) << name;
-  }
-}
-
-// The energy that a collapse leaves is that of the proof, in any type.
-TEST_F(Run, EnergyAtACollapseHasDigits) {
-  const auto last = [&](const std::string& file) { return numbers(read(file), "series", "energy").back(); };
-  const std::string run = "cradle run collapse3 --quiet --force --set output.events=false ";
-  shell(run + "-o a.h5", 3);
-  const double energy = last("a.h5");
-  EXPECT_GT(energy, 1e-257);
-  EXPECT_LT(energy, 1e-254);
-  shell(run + "--set run.precision=double-double -o b.h5", 3);
-  EXPECT_NEAR(last("b.h5") / energy, 1, 1e-13);
-  shell("cradle certify collapse3 --quiet -o c.h5", 0);
-  const auto proved = read("c.h5");
-  EXPECT_NEAR(numbers(proved, "series", "energy_low").back() / energy, 1, 1e-12);
-  // Of the run's own: digits and the ledger's difference; and the last snapshot is at the collision, not at a rounded
-  // time beside it.
-  const auto result = read("a.h5");
-  EXPECT_GT(tools::attribute<double>(result.attributes, "energy_digits", ""), 12);
-  EXPECT_LT(tools::attribute<double>(result.attributes, "energy_digits", ""), 16);
-  EXPECT_LT(std::abs(tools::attribute<double>(result.attributes, "ledger_error", "")), 1e-15);
-  EXPECT_EQ(tools::attribute<double>(result.find("snapshots/0000")->attributes, "gap_min", ""), 0);
-}
-
 class Cadence : public testing::TestWithParam<ListedCase> {
  protected:
   static tools::RunOutcome run(const std::string& points) {
@@ -126,5 +86,64 @@ TEST_P(Cadence, ChangesNothingButTheSeries) {
 
 INSTANTIATE_TEST_SUITE_P(Lattices, Cadence, testing::ValuesIn(cases_in("run/lattices.txt")),
                          [](const auto& parameter) { return parameter.param.name(); });
+
+// ---- gravity and shaken walls
+
+using tools::Result;
+
+const std::string law = "law = { type = 'inelastic', restitution = 0.95, cutoff = 0.01 }\n";
+const std::string beads = "initial = { type = 'list', x = [1, 2, 3.5, 4, 6], v = [0.5, 0, -1, 0, 0.25] }\n";
+const std::string ball = "initial = { type = 'list', x = [1], v = [0.5] }\n";
+const std::string falls = "gravity.acceleration = -0.5\n";
+const std::string output = "run.until = 12\noutput = { series.points = 49, snapshots = [0, 3, 12], events = true }\n";
+std::string floor_of(const std::string& motion, const std::string& more = "restitution = 0.9") {
+  return "walls.left = { position = 0, motion = '" + motion + "', amplitude = 0.25, frequency = 3, phase = 0.5, " +
+         more + " }\n";
+}
+const std::string falling = law + beads + falls + "walls.left = { position = 0, restitution = 0.9 }\n" + output;
+const std::string between = law +
+                            "initial = { type = 'gas', particles = 40, perturbation = 0.2 }\nrun.until = 6\n"
+                            "gravity.acceleration = 0.25\nwalls.right.temperature = 2\noutput.snapshots = [6]\n"
+                            "output.series.points = 7\noutput.profiles = { times = [5], bins = 4, range = [0, 40] }\n";
+std::string shaken(const std::string& floor) { return law + beads + falls + floor + output; }
+
+using GravityAndWalls = ProgramTest;
+
+TEST_F(GravityAndWalls, TheAccountOfEnergyBalances) {
+  for (const std::string& scene :
+       {falling, between, falling + "run.coordinates = 'absolute'\n", shaken(floor_of("sine")),
+        shaken(floor_of("sawtooth")), shaken(floor_of("parabola")),
+        shaken(floor_of("sine")) + "run.coordinates = 'absolute'\n", law + beads + floor_of("sine") + output,
+        law + ball + falls + floor_of("sine", "restitution = 0.25, rest_speed = 0.2") + output,
+        shaken(floor_of("sine", "restitution = 0.9, rest_speed = 0.1"))}) {
+    SCOPED_TRACE(scene);
+    const Result result = result_of(scene);
+    const auto of = [&](const std::string& name) { return numbers(result, "series", name); };
+    const std::string wall = has(scene, "walls.left") ? "wall_left_" : "wall_right_";
+    const auto kinetic = of("energy"), lost = of("energy_lost"), given = of(wall + "energy");
+    const auto potential = has(scene, "gravity") ? of("potential_energy") : std::vector<double>(kinetic.size());
+    EXPECT_GT(numbers<std::uint64_t>(result, "series", wall + "collisions").back(), has(scene, "gravity") ? 2U : 0U);
+    if (has(scene, "motion")) {
+      EXPECT_NE(given.back(), 0);
+    }
+    EXPECT_GT(lost.back(), 0);
+    const double scale = std::abs(potential[0]) + kinetic[0] + std::abs(given.back());
+    for (std::size_t k = 0; k < kinetic.size(); ++k)
+      EXPECT_NEAR(kinetic[k] + potential[k] + lost[k] - given[k], kinetic[0] + potential[0], 1e-13 * scale);
+    for (const auto& [name, value] : result.attributes)
+      if (name == "ledger_error") {
+        EXPECT_LT(std::abs(std::get<double>(value)), 1e-13 * scale);
+      }
+  }
+}
+
+// x(t) = A sin(omega t + phi) in [-A, A] at a sample of the wall's own particle: one that rests on it.
+TEST_F(GravityAndWalls, ABallAtRestHasTheMotionOfTheFloor) {
+  const Result result = result_of(law + ball + "gravity.acceleration = -4\n" +  // A omega^2 = 2.25 < 4
+                                  floor_of("sine", "restitution = 0.25, rest_speed = 0.2") + output);
+  EXPECT_NEAR(numbers(result, "snapshots/0002", "x").back(), 0.25 * std::sin(36.5), 1e-14);
+  EXPECT_NEAR(numbers(result, "snapshots/0002", "v").back(), 0.75 * std::cos(36.5), 1e-14);
+  EXPECT_LT(numbers<std::uint64_t>(result, "series", "collisions").back(), 20U);
+}
 
 }  // namespace cradle::tests::run_test

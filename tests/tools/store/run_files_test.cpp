@@ -1,13 +1,17 @@
-// The files beside a result during its run, as users meet them: inspected, damaged, of another version, or of another
-// run that is in the way.
+// The files beside a result during its run: damaged, of another version, or of another run that is in the way.
+// (Inspected, of runs that are killed, that nobody else writes to them: tests/tools/run/outputs.txt.) What is
+// overwritten of proofs whose precision was raised, and of studies that were forced and interrupted; of two ensembles
+// that write to one name the second is refused before it has done anything. (All else that is replaced or not:
+// tests/tools/outputs.txt.)
 #include <thread>
 
+#include "cradle/tests/tools/ensemble/ensembles.hpp"
 #include "cradle/tests/tools/faults.hpp"
-#include "cradle/tests/tools/program.hpp"
+#include "cradle/tools/ensemble/ensemble.hpp"
 #include "cradle/tools/result/difference.hpp"
 #include "cradle/tools/result/growing_tables.hpp"
 #include "cradle/tools/result/writer.hpp"
-#include "cradle/tools/setup/read_scene.hpp"
+#include "cradle/tools/store/overwrite.hpp"
 #include "cradle/tools/store/run_files.hpp"
 #include "cradle/tools/support/bytes.hpp"
 #include "cradle/tools/support/version.hpp"
@@ -16,9 +20,6 @@ namespace run_files_test {
 
 using namespace cradle::tests;
 using namespace cradle::tools;
-
-const std::string run = "cradle run fig2 --quiet --set initial.particles=1000 --set run.until=1300 --set "
-                        "output.checkpoint.every_seconds=0.05 ";
 
 class Files : public ProgramTest {
  protected:
@@ -31,48 +32,11 @@ class Files : public ProgramTest {
     bytes.resize(bytes.size() - sizeof(std::uint64_t));
     return bytes + to_bytes(crc64(std::string_view(bytes).substr(first)));
   }
-
-  // Leaves a run that was killed, with its state, and what it would have come to: whole.h5. One that was over before is
-  // made again, twice as long, of twice as many particles: else they would have flown apart by then.
-  void kill_a_run() const {
-    for (int until = 1300;; until *= 2) {
-      const std::string size = std::to_string(until);
-      const std::string long_run = run + "--set run.until=" + size + " --set initial.particles=" + size + " -o ";
-      shell("rm -f a.h5*; " + long_run +
-            "a.h5 & pid=$!; until [ -e a.h5.checkpoint ] || [ -e a.h5 ]; do :; done; kill -9 $pid; wait $pid");
-      if (exists("a.h5") || !exists("a.h5.part")) continue;
-      shell(long_run + "whole.h5", 0);
-      return;
-    }
-  }
 };
 
 JournalHeader header() {
   const Scene scene = parse_scene("law.type = 'sticky'\ninitial.type = 'rows'\nrun.until = 10\n", "s.toml");
   return {"run", 7, effective_toml(scene), "s"};
-}
-
-TEST_F(Files, ARunInProgressCanBeInspected) {
-  const Printed inspected =
-      shell(endless_run("a.h5") + until_collisions("a.h5") +
-                "until cradle info a.h5.part >info && grep -q '^time.* of 1e+15' info; do sleep 0.1; done; cat info; "
-                "echo ---; cradle info a.h5.checkpoint; kill -9 $pid",
-            0);
-  for (const char* said : {"journal of a run", "\ntime  ", " of 1e+15", "\ncollisions  ", " so far\n", "\ncomputing  ",
-                           "\ncheckpoint  ", "/series", "energy_lost", "---\ncheckpoint of a run"})
-    EXPECT_TRUE(has(inspected.out, said)) << inspected.out;
-  EXPECT_FALSE(has(inspected.out, "not whole")) << "a journal that is being written has no torn end";
-}
-
-TEST_F(Files, FollowingARunEndsWithIt) {
-  // A run that ends takes its journal away. This one never does, so that following it begins in time on any machine.
-  const Printed followed =
-      shell(endless_run("a.h5") + until_collisions("a.h5") +
-                "cradle info --follow a.h5.part >printed & "
-                "follower=$!; while ! grep -q 'journal of a run' printed; do sleep 0.02; done; kill -9 $pid; "
-                "rm a.h5.part; wait $follower; status=$?; cat printed; (exit $status)",
-            0);
-  EXPECT_TRUE(has(followed.out, "a.h5.part is gone: the run is over")) << followed.out;
 }
 
 // What is beside FILE belongs to no run that is killed before it has written anything.
@@ -81,32 +45,6 @@ TEST_F(Files, ANewRunTakesTheJournalOfTheOneBeforeAway) {
   { const RunFiles files(path("a.h5"), parse_scene(header().scene, "s.toml")); }
   EXPECT_FALSE(exists("a.h5.part"));
   refused("resume a.h5", 4, "a.h5: nothing to continue from");
-}
-
-TEST_F(Files, AKilledRunIsGoneOnWithAndThenThereIsNothingToDo) {
-  kill_a_run();
-  shell("cradle resume a.h5.part", 0);  // any of the names
-  expect_same("a.h5", "whole.h5");
-  EXPECT_FALSE(exists("a.h5.part"));
-  EXPECT_TRUE(has(shell("cradle resume a.h5", 0).out, "nothing to do"));
-  refused("resume b.h5", 4, "b.h5: nothing to continue from");
-  for (const auto& [until, said] :
-       {std::pair("100", "before the end"), std::pair("soon", "not a number"),
-        std::pair("1e99", "too late for this run"), std::pair("1e400", "too late for this run")})
-    refused(std::string("resume a.h5 --until ") + until, 2, std::string("--until: ") + said);
-}
-
-TEST_F(Files, WithoutItsCheckpointARunStartsAnewAndWithADamagedOneItSaysSo) {
-  kill_a_run();
-  std::string state = contents(folder / "a.h5.checkpoint");
-  state[state.size() / 2] = static_cast<char>(state[state.size() / 2] ^ 4);
-  write("a.h5.checkpoint", state);
-  refused("resume a.h5", 4,
-          "a.h5.checkpoint: not a checkpoint, or damaged (found its checksum is wrong): remove it: the run then starts "
-          "anew");
-  std::filesystem::remove(folder / "a.h5.checkpoint");
-  shell("cradle resume a.h5", 0);
-  expect_same("a.h5", "whole.h5");
 }
 
 TEST_F(Files, OtherVersionsAreRefusedByName) {
@@ -129,7 +67,7 @@ TEST_F(Files, ARunThatIsNotFinishedIsNotThrownAwayByAnother) {
   for (const double seconds : {3.0, 3600.0}) {
     JournalWriter(path("a.h5.part"), header()).append(to_bytes(RunRecord(RunStatus{.seconds = seconds, .time = 5})));
     const std::string before = contents(folder / "a.h5.part");
-    const Printed other = shell(run + "-o a.h5", 2);
+    const Printed other = shell("cradle run fig5 --quiet -o a.h5", 2);
     EXPECT_TRUE(has(other.err, "a run of other settings that is not finished (found t = 5, ")) << other.err;
     EXPECT_TRUE(has(other.err, "continue with `cradle resume a.h5`, give another -o FILE, or --force to replace it"));
     EXPECT_TRUE(contents(folder / "a.h5.part") == before);
@@ -137,7 +75,7 @@ TEST_F(Files, ARunThatIsNotFinishedIsNotThrownAwayByAnother) {
   EXPECT_TRUE(has(refusal(Exit::bad_input, [&] { RunFiles(path("a.h5"), same); }),
                   "a run that is not finished (found t = 5, 3600 s of computing)"));
   shell("cradle resume a.h5", 0);
-  shell(run + "-o a.h5 --force", 0);
+  shell("cradle run fig5 --quiet -o a.h5 --force", 0);
   EXPECT_FALSE(exists("a.h5.part"));
 }
 
@@ -223,6 +161,68 @@ TEST_F(Files, PiecesMakeTheFileThatAllAtOnceMakes) {
   ASSERT_EQ(one.groups.size(), 4U);
   EXPECT_TRUE(differences(one, other, "pieces", "whole").found.empty());
   for (std::size_t k = 0; k < one.groups.size(); ++k) EXPECT_EQ(one.groups[k].name, other.groups[k].name);
+}
+
+// ---- what is overwritten
+
+using Overwriting = ProgramTest;
+
+constexpr const char* scene = "law = { type = 'inelastic', restitution = 0.9 }\nrun.until = 4\n"
+                              "initial = { type = 'rows', particles = 6, perturbation = 0.05 }\n";
+
+TEST_F(Overwriting, AProofWhosePrecisionWasRaisedIsMadeAgain) {
+  const Scene given = parse_scene(scene, "s.toml"), raised = parse_scene(scene, "s.toml", {"run.precision=float128"});
+  Result result{{{"scene", effective_toml(raised)}, {"name", "s"}, {"precision", precision_name(raised.run)}}, {}};
+  result.attributes.insert(result.attributes.begin(), {"format_version", std::uint64_t{2}});
+  say_how_made(result, "certify", given);
+  write_result(result, path("proof.h5"));
+  check_overwrite(path("proof.h5"), "certify", &given, Force::no);
+  EXPECT_TRUE(has(refusal(Exit::bad_input, [&] { check_overwrite(path("proof.h5"), "certify", &raised, Force::no); }),
+                  "another command (found cradle certify --set 'run.precision=double', here certify)"));
+}
+
+// A forced study that was interrupted continues; its journal says that it replaces what is there.
+TEST_F(Overwriting, AForcedEnsembleCanBeResumed) {
+  write("s.toml", scene);
+  shell("cradle ensemble s.toml --replicas 2 -o e.h5", 0);
+  const Study other = ensemble_of(parse_scene(scene, "s.toml", {"law.restitution=0.8"}));
+  {
+    EnsembleStore store(other, path("e.h5"));
+    store.load(Force::yes);
+    store.start_journal(0, {0, 3}, 1 << 20);
+  }
+  EXPECT_TRUE(exists("e.h5.part"));
+  shell("cradle resume e.h5", 0);
+  EXPECT_EQ(attribute<std::uint64_t>(read("e.h5").attributes, "replicas", "e.h5"), 3U);
+  EXPECT_TRUE(has(attribute<std::string>(read("e.h5").attributes, "scene", "e.h5"), "restitution = 0.8"));
+}
+
+// The second comes when the first one is about to run its first replica.
+TEST_F(Ensembles, SecondOfTwoThatBeginAfreshIsRefused) {
+  struct First : OneProcess {
+    using OneProcess::OneProcess;
+    int share(const std::vector<JobRange>& jobs, const std::function<void(const NextJob&)>& work,
+              const std::function<void(std::uint64_t)>& others_took) override {
+      begun();
+      return OneProcess::share(jobs, work, others_took);
+    }
+    std::function<void()> begun;
+  };
+  Printed second{-1, "", ""};
+  Interrupt interrupt;
+  First first(interrupt);
+  first.begun = [&] {
+    EXPECT_FALSE(exists("a.h5"));
+    second = shell("cradle ensemble shock.toml --first 4 --replicas 4 -o a.h5");
+  };
+  const EnsembleOptions options{.replicas = {0, 4}, .progress = ProgressLine::Show::never};
+  EXPECT_EQ(run_study(ensemble_of(scene("shock.toml")), options, path("a.h5"), first).status, Exit::done);
+  EXPECT_EQ(second.status, 4);
+  EXPECT_TRUE(begins(second.err, "cradle: a.h5: another program is writing this file (found process "));
+  // It comes again when the first one is done: nothing is lost.
+  run("ensemble shock.toml --first 4 --replicas 4 -o a.h5");
+  run("ensemble shock.toml --replicas 8 -o whole.h5");
+  expect_same("whole.h5", "a.h5");
 }
 
 }  // namespace run_files_test

@@ -1,6 +1,6 @@
 // What `cradle check` expects of a scene, against runs of the same initial state: elastic gases, whose mean number of
 // collisions is exact, up to the spread of N velocities; few particles, by Haff's law; and what it says where a gas
-// clusters. (Where a shock collapses: tests/tools/outputs.txt.)
+// clusters. (Where a shock collapses, of which rows nothing is known: tests/tools/outputs.txt.)
 #include "cradle/tools/setup/read_scene.hpp"
 #include "cradle/tools/theory/cost.hpp"
 
@@ -108,23 +108,6 @@ TEST(ExpectedCollisions, OfRowsThatPassEachOtherAreThoseOfTheirPairs) {
             625);
 }
 
-// What two rows that meet nothing else do says nothing of those between walls or under gravity, nor of collisions that
-// the cut-off makes elastic.
-TEST(ExpectedCollisions, OfOtherRowsAreNotKnown) {
-  const std::string rows = "law = { type = 'inelastic', restitution = 0.9 }\nrun.until = 300\n"
-                           "initial = { type = 'rows', particles = 50, speed = 0.5, perturbation = 0.2 }\n";
-  EXPECT_TRUE(expected_cost(scene_of(rows)).collisions);
-  for (const char* key : {"walls.left.position=-30", "walls.right={position=30, temperature=1}", "law.cutoff=0.5",
-                          "run.collapse=contact-time", "run.collapse=merge"}) {
-    std::vector<std::string> set{key};
-    if (set[0].ends_with("time")) set.push_back("run.contact_time=1");
-    if (set[0].ends_with("merge")) set.push_back("run.merge_speed=1");
-    const Scene scene = parse_scene(rows, "rows.toml", set);
-    EXPECT_FALSE(expected_cost(scene).collisions) << key;
-    EXPECT_FALSE(expected_cost(scene).collapse) << key;
-  }
-}
-
 TEST(ExpectedCollisions, OnAFloorHaveNoPaceUnlessParticlesRestThere) {
   const std::string ball = "law = { type = 'inelastic', restitution = 1 }\nrun.until = 30\n"
                            "initial = { type = 'list', x = [1], v = [0] }\ngravity.acceleration = -1\n";
@@ -134,7 +117,7 @@ TEST(ExpectedCollisions, OnAFloorHaveNoPaceUnlessParticlesRestThere) {
   EXPECT_TRUE(expected_cost(scene_of(ball + "walls.left.position = 0")).predictable());
 }
 
-// Haff's law has the energy within 3 % until t = tau (free_cooling_test.cpp), the rate within half of that;
+// Haff's law has the energy within 3 % until t = tau (core/theory/classics_test.cpp), the rate within half of that;
 // correlations grow up to the time of clustering, where they are of order 1: their share of the collisions until a
 // quarter of it is below 1/16.
 TEST(ExpectedCollisions, OfACoolingGasEndWhereItClusters) {

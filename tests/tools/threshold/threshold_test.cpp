@@ -1,5 +1,5 @@
-// `cradle threshold`: decisions in rationals beside runs, and continuation to the last byte. (Values at which outcomes
-// change that are known in closed form: tests/tools/outputs.txt. What is refused: tests/tools/messages.txt.)
+// `cradle threshold`: decisions in rationals beside runs. (Values at which outcomes change that are known in closed
+// form, continuation to the last byte: tests/tools/outputs.txt. What is refused: tests/tools/messages.txt.)
 
 #include <random>
 
@@ -93,34 +93,6 @@ TEST(ExactCollapse, LeavesOtherScenesOpen) {
   EXPECT_FALSE(decided("0.05", "[0, 1, 3]", {"law.cutoff=1e-3"}));
   EXPECT_FALSE(decided("0.05", "[0, 1, 3]", {"walls.left.position=-1"}));
   EXPECT_FALSE(decided("0.05", "[0, 1, 3]", {"gravity.acceleration=1"}));
-}
-
-class ThresholdCommand : public ProgramTest {};
-
-// Killed when it has made some runs; a longer search if this one was over by then.
-TEST_F(ThresholdCommand, ContinuesAfterAKillToTheSameBytes) {
-  write("s.toml", "law = { type = 'inelastic', restitution = 1 }\nrun.until = 1e30\nwalls.left.position = 0\n"
-                  "initial = { type = 'list', x = [1, 2], v = [0, -1], m = [1, 100] }\n");
-  std::string command;
-  for (int digits = 50; digits <= 800 && !exists("a.h5.part"); digits *= 2) {
-    command = "cradle threshold s.toml --outcome collisions --vary 'initial.m[1]=10000:11000' --quiet --digits " +
-              std::to_string(digits) + " -o ";
-    shell("rm -f a.h5; " + command +
-          "a.h5 & pid=$!; until cradle info a.h5.part 2>.not-yet | grep -q ': [1-9][0-9]* runs' || test -e a.h5; do "
-          "sleep 0.01; done; kill -9 $pid; wait $pid");
-  }
-  ASSERT_TRUE(exists("a.h5.part"));
-  ASSERT_FALSE(exists("a.h5"));
-  EXPECT_TRUE(has(shell("cradle resume a.h5", 2).err, "a search for a threshold"));
-  EXPECT_TRUE(has(shell("cradle run collapse3 -o a.h5", 2).err, "work of another command that is not finished"));
-  EXPECT_TRUE(has(shell("cradle export a.h5.part --to csv", 4).err, "runs of a threshold that is not found yet"));
-  const std::string other = "cradle threshold collapse3 --vary law.restitution=0.05:0.1 --digits 3 -o c.h5";
-  shell("cp a.h5.part c.h5.part", 0);
-  EXPECT_TRUE(has(shell(other, 2).err, "unfinished work of something else"));
-  shell(other + " --force", 0);
-  shell(command + "a.h5 && " + command + "b.h5", 0);
-  expect_same("a.h5", "b.h5");
-  EXPECT_FALSE(exists("a.h5.part"));
 }
 
 }  // namespace cradle::tests::threshold_test

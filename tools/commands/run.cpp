@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
+#include "cradle/core/ensemble/tbb_executor.hpp"
 #include "cradle/tools/commands/commands.hpp"
 #include "cradle/tools/store/run_files.hpp"
-#include "cradle/tools/support/threads.hpp"
 #include "cradle/tools/theory/cost.hpp"
 
 namespace cradle::tools {

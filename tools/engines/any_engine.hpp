@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "cradle/core/base/state_stream.hpp"
+#include "cradle/core/base/state.hpp"
 #include "cradle/core/engine/collapse.hpp"
 #include "cradle/core/engine/status.hpp"
 #include "cradle/core/observe/histograms.hpp"
@@ -59,9 +59,7 @@ struct EngineOptions {
 
 class AnyEngine {
  public:
-  AnyEngine() = default;
-  AnyEngine(const AnyEngine&) = delete;
-  AnyEngine& operator=(const AnyEngine&) = delete;
+  AnyEngine& operator=(AnyEngine&&) = delete;
   virtual ~AnyEngine() = default;
 
   /// Begins again with another replica, whose number the scene now has.
@@ -105,5 +103,12 @@ std::unique_ptr<AnyEngine> begin_engine(const Scene& scene, const EngineOptions&
 using Rounding = Number (*)(std::string_view decimal);
 /// Throws Error for a scalar type that this build does not have.
 Rounding rounding(const Scene& scene);
+
+/// "double", "mpfr, 50 digits", ...
+std::string precision_name(const Run& run);
+
+/// Sets MPFR's number of digits, of which a process has one at a time, if the scene's numbers are of that type. Throws
+/// Error for a type that this build does not have.
+void set_digits(const Scene& scene);
 
 }  // namespace cradle::tools

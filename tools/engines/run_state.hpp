@@ -13,7 +13,7 @@
 
 #include "cradle/core/engine/status.hpp"
 #include "cradle/core/observe/averages.hpp"
-#include "cradle/core/observe/dense_core.hpp"
+#include "cradle/core/observe/configuration_statistics.hpp"
 #include "cradle/core/observe/guards.hpp"
 #include "cradle/core/observe/profile.hpp"
 #include "cradle/core/observe/scenario.hpp"
@@ -64,8 +64,7 @@ class RunState {
   enum class Column { x, v, m, gap, closing_speed };
 
   explicit RunState(const RunTime& at) : time(at) {}
-  RunState(const RunState&) = delete;
-  RunState& operator=(const RunState&) = delete;
+  RunState& operator=(RunState&&) = delete;
   virtual ~RunState() = default;
 
   const RunTime time;

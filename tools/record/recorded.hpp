@@ -72,8 +72,7 @@ struct Recorded {
 class TableSink {
  public:
   explicit TableSink(Tables tables) : tables_(tables) {}
-  TableSink(const TableSink&) = delete;
-  TableSink& operator=(const TableSink&) = delete;
+  TableSink& operator=(TableSink&&) = delete;
   virtual ~TableSink() = default;
 
   bool for_file() const { return tables_ == Tables::for_file; }

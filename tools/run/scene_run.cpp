@@ -1,4 +1,4 @@
-#include "cradle/tools/run/scene_run.hpp"
+#include "cradle/tools/run/run.hpp"
 
 #include <chrono>
 #include <tuple>

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "cradle/core/base/state_stream.hpp"
+#include "cradle/core/base/state.hpp"
 #include "cradle/tools/record/recorded.hpp"
 #include "cradle/tools/record/rows.hpp"
 #include "cradle/tools/run/ends.hpp"

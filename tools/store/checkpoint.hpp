@@ -8,7 +8,7 @@
 #include <string>
 #include <tuple>
 
-#include "cradle/core/base/state_stream.hpp"
+#include "cradle/core/base/state.hpp"
 #include "cradle/tools/store/journal.hpp"
 #include "cradle/tools/support/atomic_file.hpp"
 #include "cradle/tools/support/errors.hpp"

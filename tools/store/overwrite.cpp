@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "cradle/tools/result/reader.hpp"
+#include "cradle/tools/result/files.hpp"
 #include "cradle/tools/run/run.hpp"
 #include "cradle/tools/store/journal.hpp"
 

@@ -7,10 +7,10 @@
 #include <map>
 #include <utility>
 
+#include "cradle/core/ensemble/tbb_executor.hpp"
 #include "cradle/tools/proof/certify.hpp"
-#include "cradle/tools/result/reader.hpp"
+#include "cradle/tools/result/files.hpp"
 #include "cradle/tools/store/journal.hpp"
-#include "cradle/tools/support/threads.hpp"
 #include "cradle/tools/theory/cost.hpp"
 
 namespace cradle::tools {

@@ -1,6 +1,6 @@
 // The dense core of a shock: against its definition on particles placed by hand, and particle by particle on random
 // ones.
-#include "cradle/core/observe/dense_core.hpp"
+#include "cradle/core/observe/configuration_statistics.hpp"
 
 #include <random>
 

@@ -6,7 +6,7 @@
 
 #include "cradle/tests/tools/ensemble/ensembles.hpp"
 #include "cradle/tools/ensemble/ensemble.hpp"
-#include "cradle/tools/result/writer.hpp"
+#include "cradle/tools/result/files.hpp"
 #include "cradle/tools/support/atomic_file.hpp"
 
 namespace cradle::tests::overwrite_test {

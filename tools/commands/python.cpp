@@ -13,7 +13,7 @@
 
 #include "cradle/tools/commands/commands.hpp"
 #include "cradle/tools/result/files.hpp"
-#include "cradle/tools/store/journal.hpp"
+#include "cradle/tools/store/unfinished.hpp"
 
 namespace cradle::tools {
 

@@ -7,7 +7,7 @@
 #include "cradle/core/ensemble/tbb_executor.hpp"
 #include "cradle/tools/commands/commands.hpp"
 #include "cradle/tools/store/run_files.hpp"
-#include "cradle/tools/theory/cost.hpp"
+#include "cradle/tools/theory/theory.hpp"
 
 namespace cradle::tools {
 

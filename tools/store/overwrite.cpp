@@ -8,7 +8,7 @@
 
 #include "cradle/tools/result/files.hpp"
 #include "cradle/tools/run/run.hpp"
-#include "cradle/tools/store/journal.hpp"
+#include "cradle/tools/store/unfinished.hpp"
 
 namespace cradle::tools {
 

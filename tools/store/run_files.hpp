@@ -26,9 +26,8 @@
 #include "cradle/tools/result/result.hpp"
 #include "cradle/tools/run/sink.hpp"
 #include "cradle/tools/scene/scene.hpp"
-#include "cradle/tools/store/checkpoint.hpp"
-#include "cradle/tools/store/journal.hpp"
 #include "cradle/tools/store/overwrite.hpp"
+#include "cradle/tools/store/unfinished.hpp"
 
 namespace cradle::tools {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "cradle/core/theory/free_cooling.hpp"
-#include "cradle/tools/theory/laws.hpp"
+#include "cradle/tools/theory/theory.hpp"
 
 namespace cradle::tools {
 

@@ -1,11 +1,9 @@
-#include "cradle/tools/theory/laws.hpp"
+#include "cradle/tools/theory/theory.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <iterator>
-
-#include "cradle/tools/theory/cost.hpp"
 
 namespace cradle::tools {
 

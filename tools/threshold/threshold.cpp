@@ -10,8 +10,8 @@
 #include "cradle/core/ensemble/tbb_executor.hpp"
 #include "cradle/tools/proof/certify.hpp"
 #include "cradle/tools/result/files.hpp"
-#include "cradle/tools/store/journal.hpp"
-#include "cradle/tools/theory/cost.hpp"
+#include "cradle/tools/store/unfinished.hpp"
+#include "cradle/tools/theory/theory.hpp"
 
 namespace cradle::tools {
 

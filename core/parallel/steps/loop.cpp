@@ -1,4 +1,4 @@
-#include "cradle/core/parallel/steps/loop.hpp"
+#include "cradle/core/parallel/steps/steps.hpp"
 
 #include <algorithm>
 

@@ -12,7 +12,7 @@
 #include <hwy/highway.h>
 
 #include "cradle/core/base/planted_error.hpp"
-#include "cradle/core/parallel/steps/loop.hpp"
+#include "cradle/core/parallel/steps/steps.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace cradle {
@@ -153,7 +153,7 @@ HWY_INLINE void follow(Local& l, std::size_t left, unsigned left_soon, std::size
 namespace cradle {
 namespace HWY_NAMESPACE {
 
-// A step (loop.hpp).
+// A step (steps.hpp).
 template <class Collisions>
 int step(StepLine& line, const StepTask& task, StepScalars& scalars, double end, StepResult& result) {
   constexpr int most_passes = 128, reach = StepLine::tile - 1;  // StepLine::guard

@@ -1,6 +1,6 @@
 // Journals after any kind of end: for any contents of the disk a reader gives exactly the complete records before the
 // damage.
-#include "cradle/tools/store/journal.hpp"
+#include "cradle/tools/store/unfinished.hpp"
 
 #include "cradle/tests/tools/faults.hpp"
 #include "cradle/tests/tools/program.hpp"

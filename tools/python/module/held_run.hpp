@@ -29,9 +29,9 @@
 #include "cradle/tools/result/files.hpp"
 #include "cradle/tools/run/run.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
-#include "cradle/tools/store/checkpoint.hpp"
 #include "cradle/tools/store/overwrite.hpp"
 #include "cradle/tools/store/run_files.hpp"
+#include "cradle/tools/store/unfinished.hpp"
 #include "cradle/tools/support/atomic_file.hpp"
 
 namespace cradle::tools {

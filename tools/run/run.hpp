@@ -14,7 +14,6 @@
 #include "cradle/tools/engines/any_engine.hpp"
 #include "cradle/tools/record/schedule.hpp"
 #include "cradle/tools/result/result.hpp"
-#include "cradle/tools/run/ends.hpp"
 #include "cradle/tools/run/sink.hpp"
 #include "cradle/tools/scene/scene.hpp"
 #include "cradle/tools/support/errors.hpp"

@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "cradle/core/observe/averages.hpp"
-#include "cradle/tools/scene/checked.hpp"
 
 namespace cradle::tools {
 namespace {

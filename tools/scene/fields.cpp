@@ -7,7 +7,7 @@
 #include <deque>
 #include <utility>
 
-#include "cradle/tools/scene/checked.hpp"
+#include "cradle/tools/scene/checks.hpp"
 
 namespace cradle::tools {
 namespace {

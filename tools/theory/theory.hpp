@@ -126,7 +126,6 @@ inline bool equal_rows(const Scene& scene) {
 void predict_inelastic(const Scene& scene, Predictions& table);
 void predict_wet(const Scene& scene, Predictions& table);
 void predict_sticky(const Scene& scene, Predictions& table);
-void predict_cooling(const Scene& scene, Predictions& table);  // on a ring, for every law
 void bouncing_rows(const Scene& scene, Cost& cost);
 void wet_rows(const Scene& scene, Cost& cost);
 void sticky_rows(const Scene& scene, Cost& cost);

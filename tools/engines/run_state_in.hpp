@@ -1,5 +1,5 @@
-// Numbers and the state of a run at one time in one scalar type: what code for all types requires of them (number.hpp,
-// any_engine.hpp).
+// Numbers and the state of a run at one time in one scalar type: what code for all types requires of them
+// (any_engine.hpp).
 #pragma once
 
 #include <algorithm>

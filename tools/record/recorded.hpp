@@ -12,7 +12,7 @@
 #include <variant>
 #include <vector>
 
-#include "cradle/tools/engines/number.hpp"
+#include "cradle/tools/engines/any_engine.hpp"
 #include "cradle/tools/result/result.hpp"
 
 namespace cradle::tools {

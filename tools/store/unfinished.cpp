@@ -35,6 +35,16 @@ std::uint64_t write_record(int file, std::string_view record, const std::string&
   return length + frame;
 }
 
+// Loads the header of a journal or a checkpoint. Throws Error (Exit::io) unless this version of the program wrote it.
+template <class From, class Header> void load_header(From& from, Header& header, const std::string& path) {
+  std::string program;
+  load(from, program);
+  if (program != version)
+    throw Error({path}, "of another version of the program", fmt::format("{}, here {}", program, version),
+                "continue with that one, or remove the file: its scene then starts anew", Exit::io);
+  load(from, header);
+}
+
 }  // namespace
 
 // ---- journals
@@ -54,12 +64,6 @@ Stored stored_in(const std::string& path) {
   return Stored::other;
 }
 
-void check_program(const std::string& found, const std::string& path) {
-  if (found != version)
-    throw Error({path}, "of another version of the program", fmt::format("{}, here {}", found, version),
-                "continue with that one, or remove the file: its scene then starts anew", Exit::io);
-}
-
 JournalReader::JournalReader(const std::string& path) : path_(path) {
   std::string record;
   if (stored_in(path) == Stored::journal) {
@@ -74,10 +78,7 @@ JournalReader::JournalReader(const std::string& path) : path_(path) {
                 "take it from a copy, or remove it", Exit::io);
   try {
     SavedState from(std::move(record));
-    std::string program;
-    load(from, program);
-    check_program(program, path);
-    load(from, header_);
+    load_header(from, header_, path);
   } catch (const std::invalid_argument& error) {
     throw Error({path}, "a damaged journal", error.what(), "take it from a copy, or remove it", Exit::io);
   }
@@ -188,10 +189,7 @@ StateReader::StateReader(const std::string& path) : path_(path) {
   if (!std::string_view(buffer_).starts_with(begin_of(Stored::checkpoint))) throw damaged("of another kind");
   at_ = begin_size;
   try {
-    std::string program;
-    load(*this, program);
-    check_program(program, path);
-    load(*this, header_);
+    load_header(*this, header_, path);
   } catch (const std::invalid_argument& error) {
     throw damaged(error.what());
   }

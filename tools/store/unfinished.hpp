@@ -71,9 +71,6 @@ Stored stored_in(const std::string& path);
 /// The first bytes of files of that kind.
 constexpr std::string_view begin_of(Stored kind) { return kind == Stored::journal ? "CRADLEJ4" : "CRADLEC4"; }
 
-/// Throws Error (Exit::io) unless this version of the program wrote the file.
-void check_program(const std::string& found, const std::string& path);
-
 /// Reads record after record. Throws Error (Exit::io) if the file is not such a journal.
 class JournalReader {
  public:

@@ -27,8 +27,7 @@
 #include "cradle/core/ensemble/tbb_executor.hpp"
 #include "cradle/core/laws/law.hpp"
 #include "cradle/core/parallel/segments.hpp"
-#include "twins/queues.hpp"
-#include "twins/time_slots.hpp"
+#include "twins/engines.hpp"
 
 namespace {
 

@@ -1,5 +1,5 @@
 // Collisions per second with particles that merge or pass through each other, wet and sticky, and of a conventional
-// engine in absolute coordinates (twins/merging.hpp). Compare the ratios within one run.
+// engine in absolute coordinates (twins/engines.hpp). Compare the ratios within one run.
 //
 //   cmake --preset release && cmake --build --preset release --target bench_merging
 //   build/release/bench/bench_merging --benchmark_repetitions=3 --benchmark_report_aggregates_only=true
@@ -20,7 +20,7 @@
 #include "cradle/core/ensemble/tbb_executor.hpp"
 #include "cradle/core/initial/gas.hpp"
 #include "cradle/core/parallel/segments.hpp"
-#include "twins/merging.hpp"
+#include "twins/engines.hpp"
 
 namespace {
 

@@ -24,7 +24,7 @@
 #include "precision/engines.hpp"
 #include "precision/known_ends.hpp"
 #include "precision/shock.hpp"
-#include "twins/queues.hpp"
+#include "twins/engines.hpp"
 
 namespace {
 

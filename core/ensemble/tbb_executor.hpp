@@ -43,4 +43,11 @@ class TbbExecutor {
   mutable oneapi::tbb::task_arena arena_;
 };
 
+// The threads of a program. Under ThreadSanitizer plain ones, since it reports false races in Debian's oneTBB.
+#ifdef __SANITIZE_THREAD__
+using Threads = ThreadExecutor;
+#else
+using Threads = TbbExecutor;
+#endif
+
 }  // namespace cradle

@@ -47,10 +47,7 @@ template <Real T> class Ledger {
     }
   }
   // Adds another ledger of the same energy.
-  void add(const Ledger& other) {
-    sum_ += other.sum_;
-    add_rest(other.rest_);
-  }
+  void add(const Ledger& other) { add_sums(other.sum_, other.rest_); }
   // The grid, for callers that add many terms at once: coarse parts, and the rests in units of the fine grid.
   const T& rounder() const { return rounder_; }
   const T& per_fine() const { return per_fine_; }

@@ -8,7 +8,7 @@
 #include "cradle/tools/ensemble/ensemble_store.hpp"
 #include "cradle/tools/run/run.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
-#include "cradle/tools/store/run_journal.hpp"
+#include "cradle/tools/store/run_files.hpp"
 
 namespace {
 

@@ -12,7 +12,7 @@
 
 #include "cradle/tests/places.hpp"
 #include "cradle/tests/texts.hpp"
-#include "cradle/tools/result/reader.hpp"
+#include "cradle/tools/result/files.hpp"
 #include "cradle/tools/support/errors.hpp"
 
 namespace cradle::tests {

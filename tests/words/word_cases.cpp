@@ -1,11 +1,10 @@
 // What a word is: its letters, other ways to write it, words that no particles can repeat. And the order of collisions
-// written compactly (core/observe/collision_word.hpp), and how far it follows a word (core/words/followed.hpp). Twin:
+// written compactly (core/observe/collision_word.hpp), and how far it follows a word (core/words/word.hpp). Twin:
 // the letters themselves, which must come back from the blocks; restrictions of a sequence to two touching letters,
 // which commuting leaves alone.
 #include <random>
 
 #include "cradle/core/observe/collision_word.hpp"
-#include "cradle/core/words/followed.hpp"
 #include "cradle/core/words/word.hpp"
 #include "cradle/tests/core/compare.hpp"
 

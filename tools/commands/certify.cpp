@@ -6,7 +6,6 @@
 #include <algorithm>
 
 #include "cradle/tools/commands/commands.hpp"
-#include "cradle/tools/proof/replicas.hpp"
 
 namespace cradle::tools {
 

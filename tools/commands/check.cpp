@@ -5,7 +5,7 @@
 #include "cradle/tools/engines/any_engine.hpp"
 #include "cradle/tools/run/run.hpp"
 #include "cradle/tools/setup/list_file.hpp"
-#include "cradle/tools/theory/cost.hpp"
+#include "cradle/tools/theory/theory.hpp"
 
 namespace cradle::tools {
 

@@ -7,7 +7,7 @@
 #include "cradle/tools/commands/commands.hpp"
 #include "cradle/tools/ensemble/study.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
-#include "cradle/tools/theory/cost.hpp"
+#include "cradle/tools/theory/theory.hpp"
 
 namespace cradle::tools {
 

@@ -3,10 +3,8 @@
 #include <filesystem>
 
 #include "cradle/tools/commands/commands.hpp"
-#include "cradle/tools/result/csv.hpp"
-#include "cradle/tools/result/reader.hpp"
-#include "cradle/tools/result/writer.hpp"
-#include "cradle/tools/store/run_journal.hpp"
+#include "cradle/tools/result/files.hpp"
+#include "cradle/tools/store/run_files.hpp"
 
 namespace cradle::tools {
 

@@ -13,11 +13,11 @@
 
 #include "cradle/tools/commands/commands.hpp"
 #include "cradle/tools/ensemble/state.hpp"
-#include "cradle/tools/result/reader.hpp"
+#include "cradle/tools/result/files.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
-#include "cradle/tools/store/journal.hpp"
 #include "cradle/tools/store/run_files.hpp"
-#include "cradle/tools/theory/cost.hpp"
+#include "cradle/tools/store/unfinished.hpp"
+#include "cradle/tools/theory/theory.hpp"
 
 namespace cradle::tools {
 

@@ -2,7 +2,7 @@
 
 #include "cradle/tools/commands/commands.hpp"
 #include "cradle/tools/ensemble/ensemble_store.hpp"
-#include "cradle/tools/result/writer.hpp"
+#include "cradle/tools/result/files.hpp"
 
 namespace cradle::tools {
 

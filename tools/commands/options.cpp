@@ -9,7 +9,7 @@
 #include <sstream>
 #include <utility>
 
-#include "cradle/tools/result/writer.hpp"
+#include "cradle/tools/result/files.hpp"
 #include "cradle/tools/scene/fields.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
 #include "cradle/tools/support/spelling.hpp"

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "cradle/tools/commands/commands.hpp"
-#include "cradle/tools/result/reader.hpp"
-#include "cradle/tools/store/journal.hpp"
+#include "cradle/tools/result/files.hpp"
+#include "cradle/tools/store/unfinished.hpp"
 
 namespace cradle::tools {
 
@@ -36,8 +36,7 @@ class TemporaryFolder {
     std::error_code ignored;
     std::filesystem::remove_all(path_, ignored);
   }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(TemporaryFolder&&) = delete;
 
   const std::string& path() const { return path_; }
   // Makes missing folders in the name.

@@ -3,7 +3,7 @@
 #include "cradle/tools/commands/commands.hpp"
 #include "cradle/tools/ensemble/ensemble_store.hpp"
 #include "cradle/tools/store/run_files.hpp"
-#include "cradle/tools/theory/cost.hpp"
+#include "cradle/tools/theory/theory.hpp"
 
 namespace cradle::tools {
 

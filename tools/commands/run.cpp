@@ -4,10 +4,10 @@
 
 #include <algorithm>
 
+#include "cradle/core/ensemble/tbb_executor.hpp"
 #include "cradle/tools/commands/commands.hpp"
 #include "cradle/tools/store/run_files.hpp"
-#include "cradle/tools/support/threads.hpp"
-#include "cradle/tools/theory/cost.hpp"
+#include "cradle/tools/theory/theory.hpp"
 
 namespace cradle::tools {
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "cradle/tools/commands/commands.hpp"
-#include "cradle/tools/theory/laws.hpp"
+#include "cradle/tools/theory/theory.hpp"
 
 namespace cradle::tools {
 

@@ -16,7 +16,6 @@
 #include <fmt/format.h>
 
 #include "cradle/core/base/state.hpp"
-#include "cradle/core/base/state_stream.hpp"
 #include "cradle/core/chains/cluster_chain.hpp"
 #include "cradle/core/chains/gap_chain.hpp"
 #include "cradle/core/chains/position_chain.hpp"
@@ -26,7 +25,6 @@
 #include "cradle/core/observe/sample.hpp"
 #include "cradle/core/parallel/segments.hpp"
 #include "cradle/core/parallel/steps/steps.hpp"
-#include "cradle/tools/engines/precision.hpp"
 #include "cradle/tools/scene/scene.hpp"
 #include "cradle/tools/setup/initial_state.hpp"
 
@@ -38,9 +36,7 @@ template <Real T> class Engine {
  public:
   using Scalar = T;
 
-  Engine() = default;
-  Engine(const Engine&) = delete;
-  Engine& operator=(const Engine&) = delete;
+  Engine& operator=(Engine&&) = delete;
   virtual ~Engine() = default;
 
   /// Begins again with other particles that need the same engine. False if it cannot: then make another one.

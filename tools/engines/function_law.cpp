@@ -1,5 +1,5 @@
 // The inelastic law with any restitution as a function of the closing speed, for runs that a caller holds
-// (tools/run/scene_run.hpp): in double, in gaps, one collision after the other.
+// (tools/run/run.hpp): in double, in gaps, one collision after the other.
 
 #include "cradle/tools/engines/engine_of.hpp"
 

@@ -1,5 +1,5 @@
-// Numbers and the state of a run at one time in one scalar type: what code for all types requires of them (number.hpp,
-// run_state.hpp).
+// Numbers and the state of a run at one time in one scalar type: what code for all types requires of them
+// (any_engine.hpp).
 #pragma once
 
 #include <algorithm>
@@ -9,8 +9,8 @@
 #include "cradle/core/observe/configuration_statistics.hpp"
 #include "cradle/core/observe/correlations.hpp"
 #include "cradle/core/observe/scenario.hpp"
+#include "cradle/tools/engines/any_engine.hpp"
 #include "cradle/tools/engines/engine_of.hpp"
-#include "cradle/tools/engines/run_state.hpp"
 
 namespace cradle::tools {
 

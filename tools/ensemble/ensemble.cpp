@@ -10,10 +10,10 @@
 #include <optional>
 #include <utility>
 
-#include "cradle/tools/engines/precision.hpp"
+#include "cradle/core/ensemble/tbb_executor.hpp"
+#include "cradle/tools/engines/any_engine.hpp"
 #include "cradle/tools/ensemble/replica_run.hpp"
 #include "cradle/tools/support/spelling.hpp"
-#include "cradle/tools/support/threads.hpp"
 
 namespace cradle::tools {
 

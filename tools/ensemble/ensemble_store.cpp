@@ -6,8 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "cradle/tools/result/reader.hpp"
-#include "cradle/tools/result/writer.hpp"
+#include "cradle/tools/result/files.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
 
 namespace cradle::tools {

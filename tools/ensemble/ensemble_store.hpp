@@ -20,8 +20,8 @@
 #include <vector>
 
 #include "cradle/tools/ensemble/study.hpp"
-#include "cradle/tools/store/journal.hpp"
 #include "cradle/tools/store/overwrite.hpp"
+#include "cradle/tools/store/unfinished.hpp"
 
 namespace cradle::tools {
 

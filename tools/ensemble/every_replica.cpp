@@ -9,7 +9,7 @@
 
 #include "cradle/tools/ensemble/state.hpp"
 #include "cradle/tools/record/rows.hpp"
-#include "cradle/tools/result/growing_tables.hpp"
+#include "cradle/tools/result/result.hpp"
 
 namespace cradle::tools {
 

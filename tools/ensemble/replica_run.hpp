@@ -1,5 +1,5 @@
 // The replicas of one ensemble, run by one thread, one after the other. What is the same for all of them is made once:
-// a replica begins the run again that the one before has left (tools/run/scene_run.hpp), and gives back numbers only.
+// a replica begins the run again that the one before has left (tools/run/run.hpp), and gives back numbers only.
 #pragma once
 
 #include <fmt/format.h>
@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "cradle/tools/ensemble/state.hpp"
-#include "cradle/tools/run/scene_run.hpp"
+#include "cradle/tools/run/run.hpp"
 #include "cradle/tools/support/interrupt.hpp"
 
 namespace cradle::tools {

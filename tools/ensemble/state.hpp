@@ -15,7 +15,7 @@
 #include "cradle/core/ensemble/ensemble.hpp"
 #include "cradle/tools/ensemble/layout.hpp"
 #include "cradle/tools/result/result.hpp"
-#include "cradle/tools/store/journal.hpp"
+#include "cradle/tools/store/unfinished.hpp"
 #include "cradle/tools/support/errors.hpp"
 
 namespace cradle::tools {

@@ -6,7 +6,7 @@
 
 #include "cradle/core/initial/rows.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
-#include "cradle/tools/store/run_journal.hpp"
+#include "cradle/tools/store/run_files.hpp"
 #include "cradle/tools/support/bytes.hpp"
 #include "cradle/tools/support/version.hpp"
 

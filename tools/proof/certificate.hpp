@@ -12,7 +12,7 @@
 #include "cradle/core/certify/checker.hpp"
 #include "cradle/precision/ball_text.hpp"
 #include "cradle/tools/result/result.hpp"
-#include "cradle/tools/run/run_observer.hpp"
+#include "cradle/tools/run/run.hpp"
 #include "cradle/tools/scene/scene.hpp"
 
 namespace cradle::tools {

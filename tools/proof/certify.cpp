@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <chrono>
 
+#include "cradle/core/ensemble/tbb_executor.hpp"
 #include "cradle/precision/scalars.hpp"
 #include "cradle/tools/scene/fields.hpp"
 #include "cradle/tools/scene/scene.hpp"
-#include "cradle/tools/support/threads.hpp"
 
 namespace cradle::tools {
 

@@ -2,12 +2,14 @@
 // proves them in balls of rising digits.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "cradle/core/ensemble/ensemble.hpp"
 #include "cradle/core/parallel/workers.hpp"
 #include "cradle/tools/proof/certificate.hpp"
 #include "cradle/tools/result/result.hpp"
@@ -65,5 +67,34 @@ std::string certificate_text(const Certified& run);
 std::string attempts_text(const Certified& run);
 /// The run's result with the certificate in it; where the proof ended, what is proved up to there.
 Result certified_result(Certified run);
+
+// ---- an ensemble of proved runs (replicas.cpp)
+
+struct CertifiedReplica {
+  std::uint64_t index = 0;
+  bool proved = false;
+  unsigned digits = 0;
+  std::uint64_t collisions = 0;
+  Enclosure<double> energy{0, 0};  // at the end
+  std::string doubt;               // where it is not proved
+  // Until the statistics have them: in the middle of their bounds at the times of the series, NaN after a collapse.
+  std::vector<double> energies;
+};
+
+struct CertifiedReplicas {
+  Scene scene;
+  std::vector<CertifiedReplica> replicas;  // by index
+  std::vector<double> times;
+  Moments energy;  // at these times, of those that are proved
+};
+
+/// All of them side by side in the first number of digits; those that are undecided then one by one in more, since
+/// MPFR has one precision per process. `threads` 0: as many as the machine has. Throws Error for a scene that cannot be
+/// run, and where it is interrupted.
+CertifiedReplicas certify_replicas(const Scene& scene, std::uint64_t count, unsigned threads,
+                                   const CertifyOptions& options);
+
+std::string replicas_text(const CertifiedReplicas& run);
+Result replicas_result(const CertifiedReplicas& run);
 
 }  // namespace cradle::tools

@@ -1,13 +1,13 @@
-#include "cradle/tools/proof/replicas.hpp"
+#include "cradle/tools/proof/certify.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
+#include "cradle/core/ensemble/tbb_executor.hpp"
 #include "cradle/tools/ensemble/layout.hpp"
 #include "cradle/tools/ensemble/state.hpp"
 #include "cradle/tools/record/schedule.hpp"
-#include "cradle/tools/support/threads.hpp"
 
 namespace cradle::tools {
 

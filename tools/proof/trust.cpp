@@ -9,12 +9,12 @@
 #include <utility>
 
 #include "cradle/core/base/real.hpp"
+#include "cradle/core/ensemble/tbb_executor.hpp"
 #include "cradle/core/observe/trace.hpp"
 #include "cradle/precision/bin_float.hpp"
 #include "cradle/precision/double_double.hpp"
 #include "cradle/tools/proof/certify.hpp"
 #include "cradle/tools/scene/scene.hpp"
-#include "cradle/tools/support/threads.hpp"
 
 namespace cradle::tools {
 

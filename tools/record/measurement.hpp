@@ -2,7 +2,7 @@
 // times and tables) and a class that finds and records its numbers, and at the end puts them into a table.
 // The list of all is in measurements.hpp; runs, files, ensembles and comparisons follow from it.
 //
-// The class has, of these, the members that it needs. `now` is a RunState (engines/run_state.hpp), `put` takes tables.
+// The class has, of these, the members that it needs. `now` is a RunState (engines/any_engine.hpp), `put` takes tables.
 //
 //   explicit X(measured)       begins
 //   begin_again()              as just begun; without it, another one is made

@@ -12,7 +12,7 @@
 #include <variant>
 #include <vector>
 
-#include "cradle/tools/engines/number.hpp"
+#include "cradle/tools/engines/any_engine.hpp"
 #include "cradle/tools/result/result.hpp"
 
 namespace cradle::tools {
@@ -72,8 +72,7 @@ struct Recorded {
 class TableSink {
  public:
   explicit TableSink(Tables tables) : tables_(tables) {}
-  TableSink(const TableSink&) = delete;
-  TableSink& operator=(const TableSink&) = delete;
+  TableSink& operator=(TableSink&&) = delete;
   virtual ~TableSink() = default;
 
   bool for_file() const { return tables_ == Tables::for_file; }

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "cradle/tools/result/growing_tables.hpp"
+#include "cradle/tools/result/result.hpp"
 #include "cradle/tools/scene/scene.hpp"
 
 namespace cradle::tools {

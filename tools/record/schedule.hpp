@@ -68,8 +68,7 @@ class Schedule {
  public:
   /// Throws Error for a scalar type that this build does not have.
   explicit Schedule(const Scene& scene);
-  Schedule(const Schedule&) = delete;
-  Schedule& operator=(const Schedule&) = delete;
+  Schedule& operator=(Schedule&&) = delete;
 
   std::vector<MeasurementTimes> of;  // as measurement_rows() has them
 

@@ -1,11 +1,11 @@
 // The collisions of a few particles as letters (core/observe/collision_word.hpp), and how far they follow the word of
-// the scene (core/words/followed.hpp): the table `sequence`.
+// the scene (core/words/word.hpp): the table `sequence`.
 #pragma once
 
 #include <optional>
 
 #include "cradle/core/observe/collision_word.hpp"
-#include "cradle/core/words/followed.hpp"
+#include "cradle/core/words/word.hpp"
 #include "cradle/tools/record/measurement.hpp"
 
 namespace cradle::tools {

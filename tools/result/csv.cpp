@@ -1,4 +1,4 @@
-#include "cradle/tools/result/csv.hpp"
+#include "cradle/tools/result/files.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,5 +1,5 @@
 // Nothing in a file is trusted: names, types, shapes and sizes are checked before use.
-#include "cradle/tools/result/reader.hpp"
+#include "cradle/tools/result/files.hpp"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,6 @@
 #include <memory>
 
 #include "cradle/tools/result/hdf5.hpp"
-#include "cradle/tools/result/seal.hpp"
 #include "cradle/tools/support/version.hpp"
 
 namespace cradle::tools {

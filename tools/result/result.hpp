@@ -1,5 +1,5 @@
-// A result in memory: named tables and attributes, in the order in which they are written. All code that writes files
-// (writer.hpp, csv.hpp) or reads them (reader.hpp) uses this form. Its layout is that of result files.
+// A result in memory: named tables and attributes, in the order in which they are written. All code that writes or
+// reads files (files.hpp) uses this form. Its layout is that of result files.
 #pragma once
 
 #include <algorithm>
@@ -9,6 +9,7 @@
 #include <string_view>
 #include <tuple>
 #include <type_traits>
+#include <unordered_map>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -98,5 +99,33 @@ inline constexpr std::string_view exact_folder = "exact/";
 inline std::string_view rounded_name(std::string_view name) {
   return name.starts_with(exact_folder) ? name.substr(exact_folder.size()) : name;
 }
+
+enum class Reading {
+  everything,
+  ends,  // only the first and the last row of every column
+};
+
+/// The tables of a result while it is made: they grow by pieces of rows.
+class GrowingTables {
+ public:
+  /// Keeps all rows of every table, or only the first and the last one and the number between them.
+  explicit GrowingTables(Reading reading = Reading::everything) : reading_(reading) {}
+
+  /// Throws Error (Exit::io) if the columns differ from those of the table.
+  void add(Group&& rows);
+  const std::vector<Group>& tables() const { return tables_; }
+  std::vector<Group>& tables() { return tables_; }
+  /// The number of numbers that were added.
+  std::uint64_t numbers() const { return numbers_; }
+
+ private:
+  Reading reading_;
+  std::vector<Group> tables_;
+  std::uint64_t numbers_ = 0;
+  std::unordered_map<std::string, std::size_t> by_name_;
+};
+
+/// The number of numbers in tables, including those that were not read.
+std::uint64_t numbers_in(const std::vector<Group>& tables);
 
 }  // namespace cradle::tools

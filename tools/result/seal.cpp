@@ -1,4 +1,4 @@
-#include "cradle/tools/result/seal.hpp"
+#include "cradle/tools/result/files.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "cradle/tools/result/writer.hpp"
+#include "cradle/tools/result/files.hpp"
 
 #include <stdlib.h>
 
@@ -8,7 +8,6 @@
 #include <map>
 
 #include "cradle/tools/result/hdf5.hpp"
-#include "cradle/tools/result/seal.hpp"
 #include "cradle/tools/support/atomic_file.hpp"
 
 namespace cradle::tools {

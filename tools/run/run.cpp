@@ -2,9 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "cradle/tools/engines/any_engine.hpp"
 #include "cradle/tools/record/rows.hpp"
-#include "cradle/tools/run/scene_run.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
 #include "cradle/tools/support/version.hpp"
 

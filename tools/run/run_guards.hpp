@@ -9,7 +9,6 @@
 #include <tuple>
 
 #include "cradle/tools/engines/any_engine.hpp"
-#include "cradle/tools/engines/precision.hpp"
 #include "cradle/tools/run/report.hpp"
 #include "cradle/tools/run/sink.hpp"
 

@@ -1,4 +1,4 @@
-#include "cradle/tools/run/scene_run.hpp"
+#include "cradle/tools/run/run.hpp"
 
 #include <chrono>
 #include <tuple>
@@ -7,8 +7,7 @@
 #include "cradle/tools/record/measurements.hpp"
 #include "cradle/tools/run/report.hpp"
 #include "cradle/tools/run/run_guards.hpp"
-#include "cradle/tools/run/run_observer.hpp"
-#include "cradle/tools/theory/cost.hpp"
+#include "cradle/tools/theory/theory.hpp"
 
 namespace cradle::tools {
 

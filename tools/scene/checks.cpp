@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "cradle/core/observe/averages.hpp"
-#include "cradle/tools/scene/checked.hpp"
 
 namespace cradle::tools {
 namespace {
@@ -79,14 +78,12 @@ void averages_have_bins_and_samples(const Checked& of) {
                           static_cast<double>(span) / (TimeAverages::batches - 1), TimeAverages::batches));
 }
 
-void pairs_stay_together(const Checked& of) {
-  if (of.scene.output.has_histogram("pair_flight") && particles_merge(of.scene))
+void particles_stay_apart(const Checked& of) {
+  if (!particles_merge(of.scene)) return;
+  if (of.scene.output.has_histogram("pair_flight"))
     of.refuse("output.histograms", "pairs that do not stay neighbours", "pair_flight of particles that merge",
               "leave out pair_flight");
-}
-
-void tagged_particles_stay_in_order(const Checked& of) {
-  if (of.scene.output.correlations.every && particles_merge(of.scene))
+  if (of.scene.output.correlations.every)
     of.refuse("output.correlations.every", "tagged particles that do not stay what they are", "particles that merge",
               "remove it");
 }
@@ -179,9 +176,9 @@ void samples_can_be_kept(const Checked& of) {
 void check_scene(const Scene& scene, const Entries& entries, const std::string& scene_file) {
   const Checked of{scene, entries, scene_file};
   check_state(of);
-  for (const auto check : {policy_of_law, series_has_times, ranges_of_bins, averages_have_bins_and_samples,
-                           pairs_stay_together, tagged_particles_stay_in_order, places_are_on_a_length, numbers_fit,
-                           loss_is_above_rounding, zone_has_a_width, samples_can_be_kept})
+  for (const auto check :
+       {policy_of_law, series_has_times, ranges_of_bins, averages_have_bins_and_samples, particles_stay_apart,
+        places_are_on_a_length, numbers_fit, loss_is_above_rounding, zone_has_a_width, samples_can_be_kept})
     check(of);
 }
 

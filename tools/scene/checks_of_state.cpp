@@ -1,5 +1,5 @@
 // Particles and walls at the start. Each check is one function. All comparisons are exact, on the decimals.
-#include "cradle/tools/scene/checked.hpp"
+#include "cradle/tools/scene/checks.hpp"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "cradle/core/theory/wet_zone.hpp"
-#include "cradle/tools/scene/checks.hpp"
 
 namespace cradle::tools {
 namespace {

@@ -1,4 +1,4 @@
-// The table of keys. To add a key, add a member in scene.hpp, laws.hpp or initial.hpp, and a row here.
+// The table of keys. To add a key, add a member in scene.hpp or choices.hpp, and a row here.
 #include "cradle/tools/scene/fields.hpp"
 
 #include <fmt/format.h>
@@ -7,7 +7,7 @@
 #include <deque>
 #include <utility>
 
-#include "cradle/tools/scene/checked.hpp"
+#include "cradle/tools/scene/checks.hpp"
 
 namespace cradle::tools {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "cradle/tools/scene/checked.hpp"
+#include "cradle/tools/scene/checks.hpp"
 
 namespace cradle::tools {
 

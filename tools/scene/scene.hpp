@@ -15,10 +15,8 @@
 #include <utility>
 #include <vector>
 
+#include "cradle/tools/scene/choices.hpp"
 #include "cradle/tools/scene/decimal.hpp"
-#include "cradle/tools/scene/initial.hpp"
-#include "cradle/tools/scene/laws.hpp"
-#include "cradle/tools/scene/scalars.hpp"
 #include "cradle/tools/support/errors.hpp"
 
 namespace cradle::tools {

@@ -5,7 +5,7 @@
 #include <compare>
 #include <optional>
 
-#include "cradle/tools/scene/checked.hpp"
+#include "cradle/tools/scene/checks.hpp"
 
 namespace cradle::tools {
 namespace {

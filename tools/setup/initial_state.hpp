@@ -160,19 +160,6 @@ std::shared_ptr<const cradle::Particles<T>> particles_without_walls(const Initia
                                    mass_pattern<T>(initial));
 }
 
-inline Shape shape_of(scene::Motion motion) {
-  switch (motion) {
-  case scene::Motion::sawtooth:
-    return Shape::sawtooth;
-  case scene::Motion::parabola:
-    return Shape::parabola;
-  case scene::Motion::sine:
-  case scene::Motion::none:
-    break;
-  }
-  return Shape::sine;
-}
-
 template <Real T> std::optional<Wall<T>> wall_of(const WallAt& wall, const Initial& initial) {
   if (!wall.position) return {};
   Wall<T> made{number<T>(*wall.position),
@@ -182,8 +169,11 @@ template <Real T> std::optional<Wall<T>> wall_of(const WallAt& wall, const Initi
                initial.seed,
                initial.replica};
   if (wall.shaken()) {
-    made.motion = std::make_shared<const WallMotion<T>>(shape_of(wall.motion), number<T>(wall.amplitude),
-                                                        number<T>(wall.frequency), number<T>(wall.phase));
+    const Shape shape = wall.motion == scene::Motion::sawtooth   ? Shape::sawtooth
+                        : wall.motion == scene::Motion::parabola ? Shape::parabola
+                                                                 : Shape::sine;
+    made.motion = std::make_shared<const WallMotion<T>>(shape, number<T>(wall.amplitude), number<T>(wall.frequency),
+                                                        number<T>(wall.phase));
   }
   if (wall.rest_speed) made.rest_speed = number<T>(*wall.rest_speed);
   return made;

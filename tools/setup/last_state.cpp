@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "cradle/precision/bin_float.hpp"
-#include "cradle/tools/result/reader.hpp"
+#include "cradle/tools/result/files.hpp"
 #include "cradle/tools/setup/initial_state.hpp"
 #include "cradle/tools/setup/list_file.hpp"
 #include "cradle/tools/setup/read_scene.hpp"

@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <fstream>
 
-#include "cradle/tools/result/reader.hpp"
+#include "cradle/tools/result/files.hpp"
 #include "cradle/tools/run/run.hpp"
-#include "cradle/tools/store/journal.hpp"
+#include "cradle/tools/store/unfinished.hpp"
 
 namespace cradle::tools {
 

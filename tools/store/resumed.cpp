@@ -6,8 +6,8 @@
 #include <filesystem>
 
 #include "cradle/tools/record/schedule.hpp"
-#include "cradle/tools/result/growing_tables.hpp"
-#include "cradle/tools/result/reader.hpp"
+#include "cradle/tools/result/files.hpp"
+#include "cradle/tools/result/result.hpp"
 #include "cradle/tools/run/run.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
 #include "cradle/tools/store/run_files.hpp"

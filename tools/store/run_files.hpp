@@ -1,6 +1,6 @@
 // The files of an unfinished run of FILE, from which it continues after any interruption:
 //
-//   FILE.part        journal: the rows recorded so far, and the progress (run_journal.hpp)
+//   FILE.part        journal: the rows recorded so far, and the progress
 //   FILE.checkpoint  the state of the run at one moment, and the number of records in the journal then
 //
 // The journal begins when there is something to lose: after two seconds or the time between two checkpoints (the
@@ -19,15 +19,39 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <variant>
+#include <vector>
 
 #include "cradle/tools/record/rows.hpp"
+#include "cradle/tools/result/result.hpp"
 #include "cradle/tools/run/sink.hpp"
 #include "cradle/tools/scene/scene.hpp"
-#include "cradle/tools/store/checkpoint.hpp"
 #include "cradle/tools/store/overwrite.hpp"
-#include "cradle/tools/store/run_journal.hpp"
+#include "cradle/tools/store/unfinished.hpp"
 
 namespace cradle::tools {
+
+/// What FILE.part holds of a run: the rows that it has recorded, and its progress.
+using RunRecord = std::variant<std::vector<Group>, RunStatus>;
+
+struct RunJournal {
+  JournalHeader header;
+  std::vector<Group> tables;        // all rows recorded so far
+  std::vector<RunStatus> statuses;  // one from time to time, the latest at the end
+  std::uint64_t torn_bytes = 0;     // of an incomplete record at the end
+};
+
+/// Throws Error (Exit::io), also for a journal of replicas.
+RunJournal read_run_journal(const std::string& path, Reading reading = Reading::everything);
+/// Calls `each` with all rows, piece by piece. Returns the number of records after the header.
+std::uint64_t for_each_piece(const std::string& path, const std::function<void(Group&& rows)>& each);
+
+/// The scene of a journal. Throws Error naming the journal.
+Scene scene_of(const JournalHeader& header, const std::string& path);
+/// A result made of the journal of a run in progress.
+Result result_so_far(RunJournal&& journal, const std::string& path);
+/// Collisions per second over the last minute of computing, or over less if there is less; 0 if there is nothing yet.
+double collisions_per_second(const std::vector<RunStatus>& statuses);
 
 /// A result with more numbers than this is not held in memory as a whole.
 inline constexpr std::uint64_t most_in_memory = std::uint64_t{1} << 25;
@@ -72,7 +96,6 @@ class RunFiles : public Sink {
   void extend(const std::string& until, const std::string& path);
   void from(const CheckpointHeader& found);
   bool checkpoint_due(Clock::time_point now) const;
-  bool worth_extending(double seconds) const;
   bool saved(const std::function<void()>& what);
   void append(const RunRecord& record);
   void write_waiting();

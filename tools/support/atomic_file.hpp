@@ -71,8 +71,7 @@ enum class Sync { yes, no };  // whether to wait for the disk
 class NewFile {
  public:
   explicit NewFile(const std::string& path);
-  NewFile(const NewFile&) = delete;
-  NewFile& operator=(const NewFile&) = delete;
+  NewFile& operator=(NewFile&&) = delete;
   ~NewFile();
 
   void write(std::array<std::string_view, 3> parts) { write_all(file_, parts, path_); }

@@ -2,6 +2,8 @@
 // whether bytes on a disk have changed.
 #pragma once
 
+#include <lzma.h>
+
 #include <cstdint>
 #include <stdexcept>
 #include <string>
@@ -29,6 +31,8 @@ template <class X> X from_bytes(std::string bytes) {
 }
 
 /// The checksum of `bytes`, CRC-64/XZ (reflected polynomial of ECMA-182). To continue after earlier bytes, give theirs.
-std::uint64_t crc64(std::string_view bytes, std::uint64_t of_bytes_before = 0);
+inline std::uint64_t crc64(std::string_view bytes, std::uint64_t of_bytes_before = 0) {
+  return lzma_crc64(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size(), of_bytes_before);
+}
 
 }  // namespace cradle::tools

@@ -45,8 +45,7 @@ class ProgressLine {
 
   explicit ProgressLine(Show show);
   ~ProgressLine();
-  ProgressLine(const ProgressLine&) = delete;
-  ProgressLine& operator=(const ProgressLine&) = delete;
+  ProgressLine& operator=(ProgressLine&&) = delete;
 
   using Clock = std::chrono::steady_clock;
 

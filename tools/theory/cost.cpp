@@ -1,4 +1,3 @@
-#include "cradle/tools/theory/cost.hpp"
 
 #include <fmt/format.h>
 
@@ -14,7 +13,7 @@
 #include "cradle/core/parallel/workers.hpp"
 #include "cradle/core/theory/free_cooling.hpp"
 #include "cradle/core/theory/inelastic_collapse.hpp"
-#include "cradle/tools/theory/laws.hpp"
+#include "cradle/tools/theory/theory.hpp"
 
 namespace cradle::tools {
 

@@ -6,8 +6,7 @@
 
 #include "cradle/core/theory/inelastic_collapse.hpp"
 #include "cradle/core/theory/inelastic_shock.hpp"
-#include "cradle/tools/theory/cost.hpp"
-#include "cradle/tools/theory/laws.hpp"
+#include "cradle/tools/theory/theory.hpp"
 
 namespace cradle::tools {
 

@@ -1,7 +1,7 @@
 // The sticky shock, section II (Fig. 1), which is also the limit of sections IV and VI: one cluster at the centre
 // absorbs all incoming particles.
 #include "cradle/core/theory/sticky_shock.hpp"
-#include "cradle/tools/theory/laws.hpp"
+#include "cradle/tools/theory/theory.hpp"
 
 namespace cradle::tools {
 

@@ -8,7 +8,7 @@
 #include "cradle/core/theory/wet_energy.hpp"
 #include "cradle/core/theory/wet_shock.hpp"
 #include "cradle/core/theory/wet_zone.hpp"
-#include "cradle/tools/theory/laws.hpp"
+#include "cradle/tools/theory/theory.hpp"
 
 namespace cradle::tools {
 

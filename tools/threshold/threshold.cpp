@@ -7,11 +7,11 @@
 #include <map>
 #include <utility>
 
+#include "cradle/core/ensemble/tbb_executor.hpp"
 #include "cradle/tools/proof/certify.hpp"
-#include "cradle/tools/result/reader.hpp"
-#include "cradle/tools/store/journal.hpp"
-#include "cradle/tools/support/threads.hpp"
-#include "cradle/tools/theory/cost.hpp"
+#include "cradle/tools/result/files.hpp"
+#include "cradle/tools/store/unfinished.hpp"
+#include "cradle/tools/theory/theory.hpp"
 
 namespace cradle::tools {
 

@@ -1,4 +1,4 @@
-#include "cradle/core/parallel/steps/loop.hpp"
+#include "cradle/core/parallel/steps/steps.hpp"
 
 #include <algorithm>
 
@@ -8,7 +8,7 @@ namespace cradle {
 // are undone and made again, as shorter ones, up to where it failed. Steps that leave collisions to the next one are
 // some 5 % faster, but fail more often in the dense core of a shock: so they do only while none fails, and not where
 // particles collapse, since a restitution that rises to 1 at low speeds lets them come apart again.
-bool run_steps(Step step, StepLine& line, const StepTask& task, StepScalars& scalars, StepPace& pace,
+bool run_steps(Steps::Step step, StepLine& line, const StepTask& task, StepScalars& scalars, StepPace& pace,
                StepResult& result) {
   constexpr int most_failures = 6, least_stretch = 4, most_stretch = 512, calm = 65536;
   constexpr std::uint64_t least_collisions = 6;  // in a step, for steps to pay

@@ -12,7 +12,7 @@
 #include <hwy/highway.h>
 
 #include "cradle/core/base/planted_error.hpp"
-#include "cradle/core/parallel/steps/loop.hpp"
+#include "cradle/core/parallel/steps/steps.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace cradle {
@@ -153,7 +153,7 @@ HWY_INLINE void follow(Local& l, std::size_t left, unsigned left_soon, std::size
 namespace cradle {
 namespace HWY_NAMESPACE {
 
-// A step (loop.hpp).
+// A step (steps.hpp).
 template <class Collisions>
 int step(StepLine& line, const StepTask& task, StepScalars& scalars, double end, StepResult& result) {
   constexpr int most_passes = 128, reach = StepLine::tile - 1;  // StepLine::guard
@@ -191,13 +191,13 @@ int step(StepLine& line, const StepTask& task, StepScalars& scalars, double end,
 
 std::size_t width() { return lanes; }
 
-template <template <StepLaw law, bool unequal> class Collisions, StepLaw law> Step by(const StepTask& task) {
+template <template <StepLaw law, bool unequal> class Collisions, StepLaw law> Steps::Step by(const StepTask& task) {
   return task.unequal ? step<Collisions<law, true>> : step<Collisions<law, false>>;
 }
-template <template <StepLaw law, bool unequal> class Collisions> Step by(const StepTask& task) {
+template <template <StepLaw law, bool unequal> class Collisions> Steps::Step by(const StepTask& task) {
   return task.law == StepLaw::hard ? by<Collisions, StepLaw::hard>(task) : by<Collisions, StepLaw::soft>(task);
 }
-Step step_of(const StepTask& task) {
+Steps::Step step_of(const StepTask& task) {
 #if CRADLE_PAIRS
   if (task.pairs) return by<Pairs>(task);
 #endif
@@ -207,7 +207,7 @@ Step step_of(const StepTask& task) {
   return task.law == StepLaw::of_speed ? by<Doubles, StepLaw::of_speed>(task) : by<Doubles>(task);
 }
 bool run(StepLine& line, const StepTask& task, StepScalars& scalars, StepPace& pace, StepResult& result) {
-  const Step by_law = step_of(task);
+  const Steps::Step by_law = step_of(task);
   return by_law != nullptr && run_steps(by_law, line, task, scalars, pace, result);
 }
 

@@ -88,6 +88,10 @@ struct StepPace {
 };
 
 struct Steps {
+  // Makes all collisions up to `end`. Returns in how many passes, or -1: some were made in the wrong order, or one of
+  // them is for the event loop.
+  using Step = int (*)(StepLine& line, const StepTask& task, StepScalars& scalars, double end, StepResult& result);
+
   const char* target;  // the vectors for which it is compiled
   // Makes all collisions of the task; or returns false, and then the line may hold anything.
   bool (*run)(StepLine& line, const StepTask& task, StepScalars& scalars, StepPace& pace, StepResult& result);
@@ -97,5 +101,9 @@ struct Steps {
 const std::vector<Steps>& all_steps();
 // The first of them if it is faster than the event loop, else null.
 const Steps* fastest_steps();
+
+// The loop over steps (loop.cpp): it decides how long they are, and what is done where one has failed.
+bool run_steps(Steps::Step step, StepLine& line, const StepTask& task, StepScalars& scalars, StepPace& pace,
+               StepResult& result);
 
 }  // namespace cradle

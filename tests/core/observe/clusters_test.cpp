@@ -6,7 +6,7 @@
 #include <random>
 
 #include "cradle/core/chains/cluster_chain.hpp"
-#include "cradle/core/observe/dense_core.hpp"
+#include "cradle/core/observe/configuration_statistics.hpp"
 #include "cradle/core/observe/scenario.hpp"
 #include "cradle/core/observe/zone.hpp"
 #include "cradle/tests/core/fixtures.hpp"

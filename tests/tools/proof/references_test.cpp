@@ -13,7 +13,6 @@
 #include "cradle/tests/precision/reference_gas.hpp"
 #include "cradle/tests/tools/program.hpp"
 #include "cradle/tools/proof/certify.hpp"
-#include "cradle/tools/proof/replicas.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
 
 namespace cradle::tests::references_test {

@@ -4,9 +4,7 @@
 #include <hdf5.h>
 
 #include "cradle/tests/tools/program.hpp"
-#include "cradle/tools/result/csv.hpp"
-#include "cradle/tools/result/seal.hpp"
-#include "cradle/tools/result/writer.hpp"
+#include "cradle/tools/result/files.hpp"
 #include "cradle/tools/support/version.hpp"
 
 namespace cradle::tests {

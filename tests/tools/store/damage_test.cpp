@@ -2,7 +2,7 @@
 // damage. Random damage to scenes, journals and checkpoints, from which a run starts or resumes: what a checksum
 // detects is reported; contents with a correct checksum, which an attacker can write, are refused or resumed to some
 // end, without a crash and within two seconds. CRADLE_MUTATIONS=10000 makes 10000 changes instead of 200.
-#include "cradle/tools/store/journal.hpp"
+#include "cradle/tools/store/unfinished.hpp"
 
 #include <unistd.h>
 

@@ -2,7 +2,6 @@
 // collisions is exact, up to the spread of N velocities; few particles, by Haff's law; and what it says where a gas
 // clusters. (Where a shock collapses, of which rows nothing is known: tests/tools/outputs.txt.)
 #include "cradle/tools/setup/read_scene.hpp"
-#include "cradle/tools/theory/cost.hpp"
 
 #include <sstream>
 
@@ -10,7 +9,7 @@
 #include "cradle/core/engine/simulation.hpp"
 #include "cradle/tests/texts.hpp"
 #include "cradle/tools/setup/initial_state.hpp"
-#include "cradle/tools/theory/laws.hpp"
+#include "cradle/tools/theory/theory.hpp"
 
 namespace cradle::tools::cost_test {
 

@@ -1,4 +1,4 @@
-// A run that Python holds: a held run (tools/run/scene_run.hpp) with its tables in memory, threads of its own, and
+// A run that Python holds: a held run (tools/run/run.hpp) with its tables in memory, threads of its own, and
 // files: checkpoints, and the result at its end.
 //
 // One scene is not as in `cradle run`: a sticky gas whose scene observes no collision is computed there directly at
@@ -24,15 +24,15 @@
 #include <vector>
 
 #include "cradle/core/base/state.hpp"
+#include "cradle/core/ensemble/tbb_executor.hpp"
 #include "cradle/core/parallel/workers.hpp"
-#include "cradle/tools/result/writer.hpp"
-#include "cradle/tools/run/scene_run.hpp"
+#include "cradle/tools/result/files.hpp"
+#include "cradle/tools/run/run.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
-#include "cradle/tools/store/checkpoint.hpp"
 #include "cradle/tools/store/overwrite.hpp"
-#include "cradle/tools/store/run_journal.hpp"
+#include "cradle/tools/store/run_files.hpp"
+#include "cradle/tools/store/unfinished.hpp"
 #include "cradle/tools/support/atomic_file.hpp"
-#include "cradle/tools/support/threads.hpp"
 
 namespace cradle::tools {
 
@@ -86,8 +86,7 @@ class Digits {
   ~Digits() {
     if (counted_) --users;
   }
-  Digits(const Digits&) = delete;
-  Digits& operator=(const Digits&) = delete;
+  Digits& operator=(Digits&&) = delete;
 
  private:
   static inline std::uint64_t digits = 0;
@@ -188,8 +187,7 @@ class HeldRun {
   struct Use {
     explicit Use(HeldRun& held_) : held(held_.require_free()), digits(held.scene_) { held.in_use_ = true; }
     ~Use() { held.in_use_ = false, held.executor_.reset(); }
-    Use(const Use&) = delete;
-    Use& operator=(const Use&) = delete;
+    Use& operator=(Use&&) = delete;
     HeldRun& held;
     Digits digits;
   };

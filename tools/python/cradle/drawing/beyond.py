@@ -1,5 +1,5 @@
 """After the collapse of a run, or of a sweep of cut-offs and of what replaces them: the energy and that of the
-sticky gas, the dense core (core/observe/dense_core.hpp), and the rate of collisions in it."""
+sticky gas, the dense core (core/observe/configuration_statistics.hpp), and the rate of collisions in it."""
 import numpy as np
 
 from .settings import mean_mass, start_of
@@ -130,7 +130,7 @@ def draw_run(result, units, panels):
 
 
 def core_of(snapshot):
-    """The slice of the particles in the core, as in dense_core.hpp, and their gaps."""
+    """The slice of the particles in the core, as in configuration_statistics.hpp, and their gaps."""
     x, m = snapshot["x"], snapshot["m"]
     held = np.concatenate([[0.0], np.cumsum(m)])
     last = np.searchsorted(held, held[:-1] + held[-1] / 2 * (1 + 1e-12), side="right") - 1  # from each particle on

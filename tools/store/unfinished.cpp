@@ -1,9 +1,10 @@
-#include "cradle/tools/store/journal.hpp"
+#include "cradle/tools/store/unfinished.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -34,9 +35,19 @@ std::uint64_t write_record(int file, std::string_view record, const std::string&
   return length + frame;
 }
 
+// Loads the header of a journal or a checkpoint. Throws Error (Exit::io) unless this version of the program wrote it.
+template <class From, class Header> void load_header(From& from, Header& header, const std::string& path) {
+  std::string program;
+  load(from, program);
+  if (program != version)
+    throw Error({path}, "of another version of the program", fmt::format("{}, here {}", program, version),
+                "continue with that one, or remove the file: its scene then starts anew", Exit::io);
+  load(from, header);
+}
+
 }  // namespace
 
-// ---- reading
+// ---- journals
 
 Stored stored_in(const std::string& path) {
   std::error_code none;
@@ -53,12 +64,6 @@ Stored stored_in(const std::string& path) {
   return Stored::other;
 }
 
-void check_program(const std::string& found, const std::string& path) {
-  if (found != version)
-    throw Error({path}, "of another version of the program", fmt::format("{}, here {}", found, version),
-                "continue with that one, or remove the file: its scene then starts anew", Exit::io);
-}
-
 JournalReader::JournalReader(const std::string& path) : path_(path) {
   std::string record;
   if (stored_in(path) == Stored::journal) {
@@ -73,10 +78,7 @@ JournalReader::JournalReader(const std::string& path) : path_(path) {
                 "take it from a copy, or remove it", Exit::io);
   try {
     SavedState from(std::move(record));
-    std::string program;
-    load(from, program);
-    check_program(program, path);
-    load(from, header_);
+    load_header(from, header_, path);
   } catch (const std::invalid_argument& error) {
     throw Error({path}, "a damaged journal", error.what(), "take it from a copy, or remove it", Exit::io);
   }
@@ -100,8 +102,6 @@ std::optional<JournalHeader> journal_header(const std::string& path) {
   if (stored_in(path) != Stored::journal) return {};
   return JournalReader(path).header();
 }
-
-// ---- writing
 
 JournalWriter::JournalWriter(const std::string& path, const JournalHeader& header,
                              const std::function<void(const Put&)>& records, Sync sync)
@@ -137,5 +137,86 @@ void JournalWriter::append(std::string_view record) {
 }
 
 void JournalWriter::sync() const { sync_file(file_, path_); }
+
+// ---- checkpoints
+
+StateWriter::StateWriter(const std::string& path, const CheckpointHeader& header) : file_(path) {
+  buffer_.reserve(buffer_size);
+  put(begin_of(Stored::checkpoint).data(), begin_size);
+  save(*this, std::string(version));
+  save(*this, header);
+}
+
+void StateWriter::flush() {
+  check_ = crc64(buffer_, check_);
+  file_.write({buffer_});
+  buffer_.clear();
+}
+
+void StateWriter::finish() {
+  flush();
+  file_.write({to_bytes(check_)});
+  file_.put_in_place();
+}
+
+Error StateReader::damaged(const std::string& what) const {
+  const bool own = path_.ends_with(".checkpoint");  // else a file that somebody gave, perhaps a result
+  return {{path_},
+          "not a checkpoint, or damaged",
+          what,
+          own ? "remove it: the run then starts anew" : "give a checkpoint",
+          Exit::io};
+}
+
+StateReader::StateReader(const std::string& path) : path_(path) {
+  stored_in(path);  // throws for other formats
+  if (!instead_of_file(path).empty()) throw damaged("no file");
+  file_.open(path, std::ios::binary);
+  if (!file_) throw Error({path}, "could not be read", std::strerror(errno), "check its name and rights", Exit::io);
+  const std::uint64_t size = std::filesystem::file_size(path);
+  if (size < begin_size + sizeof(std::uint64_t)) throw damaged("too short");
+  std::uint64_t check = 0;
+  for (after_buffer_ = size - sizeof check; after_buffer_ > 0;) {
+    fill();
+    check = crc64(buffer_, check);
+  }
+  std::uint64_t wanted = 0;
+  if (!file_.read(reinterpret_cast<char*>(&wanted), sizeof wanted) || wanted != check)
+    throw damaged("its checksum is wrong");
+  file_.seekg(0);
+  after_buffer_ = size - sizeof check;
+  fill();
+  if (!std::string_view(buffer_).starts_with(begin_of(Stored::checkpoint))) throw damaged("of another kind");
+  at_ = begin_size;
+  try {
+    load_header(*this, header_, path);
+  } catch (const std::invalid_argument& error) {
+    throw damaged(error.what());
+  }
+}
+
+void StateReader::fill() {
+  constexpr std::uint64_t at_once = std::uint64_t{1} << 18;
+  buffer_.resize(std::min(after_buffer_, at_once));
+  if (!file_.read(buffer_.data(), static_cast<std::streamsize>(buffer_.size()))) throw damaged("it has become shorter");
+  after_buffer_ -= buffer_.size();
+  at_ = 0;
+}
+
+void StateReader::get_slowly(char* data, std::size_t size) {
+  if (size > left()) throw damaged("it ends too early");
+  while (size > 0) {
+    if (at_ == buffer_.size()) fill();
+    const std::size_t now = std::min(size, buffer_.size() - at_);
+    std::memcpy(data, buffer_.data() + at_, now);
+    at_ += now;
+    data += now;
+    size -= now;
+  }
+}
+
+void StateReader::end() const {
+  if (left() > 0) throw damaged("it holds more than a state");
+}
 
 }  // namespace cradle::tools

@@ -1,5 +1,7 @@
-// The initial states: what a scene says of its particles, and what the program needs to know of each state, one row per
-// state. How a state is added is on the page of core/initial.
+// What a scene chooses among: collision laws, initial states and scalar types. What it says of its law and of its
+// particles, and what the program needs to know of each choice, a row each. How one is added is on the pages of
+// core/laws, core/initial and core. What the paper predicts for a law, and what that costs, is a row in
+// tools/theory/laws.cpp.
 #pragma once
 
 #include <cstdint>
@@ -14,6 +16,52 @@
 namespace cradle::tools {
 
 struct Scene;
+
+// ---- collision laws
+
+enum class LawType { inelastic, wet, sticky };
+
+namespace scene {
+
+struct Law {
+  LawType type = LawType::inelastic;
+  Decimal restitution;  // inelastic
+  Decimal cutoff;       // inelastic: closing speed below which collisions are elastic; 0: none
+  std::optional<Decimal>
+      cutoff_exponent;  // inelastic: the power of the speed with which the restitution falls; none: sharp
+  Decimal loss;         // wet: E_loss
+  bool operator==(const Law&) const = default;
+};
+
+}  // namespace scene
+
+struct LawRow {
+  LawType type;
+  std::string_view name;     // as in scenes
+  bool merges = false;       // particles stick or pass through each other; otherwise they bounce, also off walls
+  bool needs_events = true;  // false: the state at any time follows without collisions
+  bool policies = false;     // run.collapse can be merge or contact-time
+  bool provable = false;     // `certify` has its map in balls (tools/proof)
+};
+
+inline constexpr LawRow law_rows[] = {
+    {.type = LawType::inelastic, .name = "inelastic", .policies = true, .provable = true},
+    {.type = LawType::wet, .name = "wet", .merges = true, .provable = true},
+    {.type = LawType::sticky, .name = "sticky", .merges = true, .needs_events = false, .provable = true},
+};
+static_assert(rows_in_order(law_rows));
+
+/// The row of the scene's law.
+const LawRow& law_row(const Scene& scene);
+
+/// Whether particles stick or pass through each other, by the law or by the collapse policy.
+bool particles_merge(const Scene& scene);
+/// Whether inelastic collapse is possible and ends the run.
+bool stops_at_collapse(const Scene& scene);
+/// Whether the state at each time is computed directly, without collisions.
+bool without_collisions(const Scene& scene);
+
+// ---- initial states
 
 enum class InitialType { rows, ring, list, clusters, cold, gas };
 // The enumerators are in the order of the names in the table of fields.
@@ -95,5 +143,43 @@ static_assert(rows_in_order(initial_rows));
 
 /// The row of the scene's initial state.
 const InitialRow& initial_row(const Scene& scene);
+
+// ---- scalar types
+
+enum class Precision { double_, long_double, double_double, float128, cpp_bin_float, mpfr };
+
+struct ScalarRow {
+  // A quantity that grows linearly with the digits, for types with a variable number of digits.
+  struct Linear {
+    double fixed, per_digit = 0;
+    constexpr double at(std::uint64_t digits) const { return fixed + per_digit * static_cast<double>(digits); }
+  };
+
+  Precision type;
+  std::string_view name;  // as in scenes and precision/
+  unsigned digits;        // decimal ones that every number has; 0: as many as the scene says
+  // Time per collision in gaps and in positions, relative to gaps in double (Fig. 2 to t = 4000, bench_precision), and
+  // bytes per number.
+  Linear gaps, absolute, bytes;
+  // The range of positive numbers; empty: practically without limit.
+  std::string_view largest, least;
+};
+
+// Largest and least numbers of types whose exponents have so many bits.
+inline constexpr std::string_view of_11_bits[] = {"1.7976931348623157e308", "2.2250738585072014e-308"},
+                                  of_15_bits[] = {"1.18973149535723176502e4932", "3.3621031431120935063e-4932"};
+
+inline constexpr ScalarRow scalar_rows[] = {
+    {Precision::double_, "double", 15, {1}, {1.2}, {8}, of_11_bits[0], of_11_bits[1]},
+    {Precision::long_double, "long double", 18, {5.3}, {4}, {16}, of_15_bits[0], of_15_bits[1]},
+    {Precision::double_double, "double-double", 31, {2.6}, {6.6}, {16}, of_11_bits[0], of_11_bits[1]},
+    {Precision::float128, "float128", 33, {10}, {30}, {16}, of_15_bits[0], of_15_bits[1]},
+    // The exponent has 32 bits.
+    {Precision::cpp_bin_float, "cpp_bin_float", 100, {41}, {104}, {64}, "1e323228496", "1e-323228496"},
+    {Precision::mpfr, "mpfr", 0, {6.3, 0.112}, {22, 0.4}, {48, 1 / 2.4}, "", ""},
+};
+static_assert(rows_in_order(scalar_rows));
+
+constexpr const ScalarRow& scalar_row(Precision type) { return scalar_rows[static_cast<std::size_t>(type)]; }
 
 }  // namespace cradle::tools

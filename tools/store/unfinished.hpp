@@ -1,7 +1,9 @@
-// A file to which a run, or a study with replicas, appends records during the work, so that none is lost if the program
-// or the machine stops: every record carries its length and a checksum. After a kill the last record may be incomplete:
-// a reader stops there and reports how much it left out, and a writer that continues cuts it off. The first record is
-// the header. Only the version of the program that wrote a journal reads it.
+// The files from which unfinished work continues.
+//
+// A journal is a file to which a run, or a study with replicas, appends records during the work, so that none is lost
+// if the program or the machine stops: every record carries its length and a checksum. After a kill the last record may
+// be incomplete: a reader stops there and reports how much it left out, and a writer that continues cuts it off. The
+// first record is the header. Only the version of the program that wrote a journal reads it.
 //
 // A journal has one writer because the result beside it has one (FileClaim).
 #pragma once
@@ -16,10 +18,12 @@
 #include <utility>
 #include <vector>
 
+#include "cradle/core/base/state.hpp"
 #include "cradle/core/ensemble/statistics.hpp"
 #include "cradle/core/ensemble/tree.hpp"
 #include "cradle/tools/support/atomic_file.hpp"
 #include "cradle/tools/support/bytes.hpp"
+#include "cradle/tools/support/errors.hpp"
 
 namespace cradle::tools {
 
@@ -66,9 +70,6 @@ enum class Stored { other, journal, checkpoint };
 Stored stored_in(const std::string& path);
 /// The first bytes of files of that kind.
 constexpr std::string_view begin_of(Stored kind) { return kind == Stored::journal ? "CRADLEJ4" : "CRADLEC4"; }
-
-/// Throws Error (Exit::io) unless this version of the program wrote the file.
-void check_program(const std::string& found, const std::string& path);
 
 /// Reads record after record. Throws Error (Exit::io) if the file is not such a journal.
 class JournalReader {
@@ -125,6 +126,54 @@ class JournalWriter {
   std::string path_;
   Descriptor file_;
   std::uint64_t bytes_ = 0;
+};
+
+// A checkpoint is a file that holds the state of a run at one moment (core/base/state.hpp). It is written and read as a
+// stream, however large, and ends with a checksum over all of it. It is written whole or not at all (atomic_file.hpp),
+// and nothing in it is used before its checksum has been verified.
+
+struct CheckpointHeader {
+  JournalHeader run;  // of a run: as its journal begins, with the same identity; a simulation in Python has no journal
+  std::uint64_t records = 0, check = 0;  // of the journal at that time: number of records, checksum of the last one
+  double seconds = 0, time = 0;          // of computing; simulated
+  std::uint64_t collisions = 0;
+
+  static auto state(auto& self) {
+    return std::tie(self.run, self.records, self.check, self.seconds, self.time, self.collisions);
+  }
+};
+
+/// Writes a checkpoint. Throws Error (Exit::io), as the reader does.
+class StateWriter final : public StateSink {
+ public:
+  /// Writes the header; the state follows. The file appears at `path` when it is finished.
+  StateWriter(const std::string& path, const CheckpointHeader& header);
+
+  /// Syncs the file and replaces the one that was there before.
+  void finish();
+
+ private:
+  void flush() override;
+
+  NewFile file_;
+  std::uint64_t check_ = 0;
+};
+
+class StateReader final : public StateSource {
+ public:
+  /// Reads the whole file once to verify it, then its header.
+  explicit StateReader(const std::string& path);
+  const CheckpointHeader& header() const { return header_; }
+  void end() const override;
+
+ private:
+  void get_slowly(char* data, std::size_t size) override;
+  void fill();
+  Error damaged(const std::string& what) const;
+
+  std::string path_;
+  CheckpointHeader header_;
+  std::ifstream file_;
 };
 
 }  // namespace cradle::tools

@@ -1,12 +1,10 @@
 #pragma once
-// Conventional event-driven programs: absolute positions and velocities in double, on a line; a particle is advanced
-// only when it collides. Equal masses; inelastic law with a velocity cut-off. They differ in the queue of predicted
-// collisions. The better ones have a binary heap with one entry per gap. It knows the place of each gap's entry, so a
-// new prediction replaces the old one in place (increase or decrease key). There are no stale events, and the heap
-// never grows.
+// Conventional event-driven programs, in double. All but the last hold equal particles on a line that follow the
+// inelastic law with a velocity cut-off.
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -32,6 +30,7 @@ struct Flying {
   }
 };
 
+// Absolute positions and velocities; a particle is advanced only when it collides.
 class Line {
  public:
   Line(const cradle::Particles<double>& particles, Law law) : law_(law) {
@@ -73,7 +72,10 @@ class Line {
   std::vector<Flying> particles_;
 };
 
-// ---- queues
+// ---- queues of predicted collisions
+//
+// The better ones are a binary heap with one entry per gap. It knows the place of each gap's entry, so a new prediction
+// replaces the old one in place (increase or decrease key). There are no stale events, and the heap never grows.
 
 struct Event {
   double time;
@@ -200,6 +202,77 @@ template <class Queue> class QueueEngine {
  private:
   Line line_;
   Queue queue_;
+  std::uint64_t collisions_ = 0;
+};
+
+// ---- time slots
+
+// The best of the conventional engines: neighbours as gaps, as in Cradle, and a flat table of time slots for the next
+// collisions. Each slot is a list that is searched from end to end (a calendar queue; R. Brown 1988, doi
+// 10.1145/63039.63045). A slot holds about two collisions; its width is adapted as the pace of collisions changes. The
+// table has one slot for every one or two gaps, so that few entries are further ahead than one round.
+class TimeSlotsEngine {
+ public:
+  TimeSlotsEngine(const cradle::Particles<double>& particles, Law law);
+
+  // Makes every collision at times <= until.
+  void advance(double until);
+
+  std::uint64_t collisions() const { return collisions_; }
+
+ private:
+  static constexpr std::uint32_t nobody = ~std::uint32_t{0};
+  static constexpr std::uint64_t nowhere = ~std::uint64_t{0};
+
+  struct Gap {
+    double gap, closing, time;  // at `time`
+    double due = never;
+    std::uint64_t slot = nowhere;  // counted from time 0; the place in the table is this modulo its size
+    std::uint32_t next = nobody, previous = nobody;
+  };
+
+  std::uint32_t first();
+  void kick(std::uint32_t i, double gain, double time);
+  void predict(std::uint32_t i);
+  void enter(std::uint32_t i);
+  void leave(std::uint32_t i);
+  void fit(double time);
+
+  Law law_;
+  std::vector<Gap> gaps_;
+  std::vector<std::uint32_t> slots_;
+  double slots_per_time_ = 1;
+  std::uint64_t now_ = 0;      // the current slot
+  std::uint64_t entered_ = 0;  // gaps in the table
+  std::uint64_t collisions_ = 0, fitted_at_ = 0, next_fit_ = 0;
+  double fitted_time_ = 0;
+};
+
+// ---- particles that merge or pass through each other
+
+// On a line or a ring: absolute positions and velocities, links between the remaining neighbours, an indexed heap of
+// the times when gaps close. It holds every particle of the scene from the start.
+class MergingEngine {
+ public:
+  // `loss`: of the wet law; sticky particles if negative.
+  MergingEngine(const cradle::Particles<double>& particles, double loss);
+
+  // Makes every collision at times <= until.
+  void advance(double until);
+
+  std::uint64_t collisions() const { return collisions_; }
+
+ private:
+  struct Particle : Flying {
+    double m;
+    std::uint32_t left, right;
+  };
+
+  double due(std::uint32_t i, double now) const;
+
+  double loss_, circumference_;
+  std::vector<Particle> particles_;
+  IndexedHeap heap_;
   std::uint64_t collisions_ = 0;
 };
 

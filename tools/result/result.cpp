@@ -1,4 +1,4 @@
-#include "cradle/tools/result/growing_tables.hpp"
+#include "cradle/tools/result/result.hpp"
 
 #include <algorithm>
 #include <iterator>

@@ -1,5 +1,5 @@
-// The paper's predictions for a scene as one table, for `cradle theory` and for the curves in pictures, and those of
-// each law. They end where a front has passed through the other row.
+// What is known of a scene before it runs: its cost, and the paper's predictions as one table, for `cradle theory` and
+// for the curves in pictures. Predictions end where a front has passed through the other row.
 #pragma once
 
 #include <algorithm>
@@ -12,6 +12,45 @@
 #include "cradle/tools/scene/scene.hpp"
 
 namespace cradle::tools {
+
+// ---- the cost
+
+/// Collisions by the laws of the shock and of gases, time by the speed of each scalar type, memory by the bytes per
+/// particle. Orders of magnitude, for planning.
+struct Cost {
+  double particles = 0;              // in the active zone at the end, at most
+  std::optional<double> collisions;  // none: not known for this initial state
+  std::optional<double> collapse;    // of inelastic collapse, if before the end; collisions: until then
+  std::optional<double> clustering;  // of a gas that cools, likewise
+  bool floor = false;                // on which particles may collapse, at a time that is not known
+  std::string endless = {};          // a line, if nothing ends the run where particles collapse
+  double collisions_per_second = 0;
+  double memory = 0;  // bytes
+
+  /// Whether the pace of a run says how long the rest takes.
+  bool predictable() const { return !collapse && !clustering && !floor; }
+};
+
+Cost expected_cost(const Scene& scene);
+
+/// What is expected, in lines: how many collisions, until which collapse or clustering, what follows it, where the run
+/// ends then and what ends it sooner or takes it past; or that nothing is known.
+std::string expected_lines(const Scene& scene, const Cost& cost);
+
+/// A number of so many digits without a power of ten below a million: 1000, not 1e+03.
+std::string about(double x, int digits = 2);
+
+/// These lines if the run ends at a collapse, goes past it or past clustering, or may have no end; else empty.
+std::string expected_warning(const Scene& scene);
+
+/// What threads gain for one run: the speed-up at its end, or the reason why it uses one.
+struct Threading {
+  double gain = 1;
+  std::string alone;  // the reason; empty: several threads
+};
+Threading expected_threading(const Scene& scene, const Cost& cost, unsigned threads);
+
+// ---- predictions
 
 struct Prediction {
   std::string quantity;     // front_position, energy, ...
@@ -50,8 +89,6 @@ class Predictions {
   std::vector<Prediction> rows_;
 };
 
-struct Cost;
-
 /// What is known of each law beforehand: a row for those of which anything is.
 struct LawTheory {
   LawType type = LawType::inelastic;
@@ -85,9 +122,12 @@ inline bool equal_rows(const Scene& scene) {
          10 * scene.run.contact_time.value <= flight;
 }
 
+// By law (laws.cpp): predictions, and expected collisions of two equal rows.
 void predict_inelastic(const Scene& scene, Predictions& table);
 void predict_wet(const Scene& scene, Predictions& table);
 void predict_sticky(const Scene& scene, Predictions& table);
-void predict_cooling(const Scene& scene, Predictions& table);  // on a ring, for every law
+void bouncing_rows(const Scene& scene, Cost& cost);
+void wet_rows(const Scene& scene, Cost& cost);
+void sticky_rows(const Scene& scene, Cost& cost);
 
 }  // namespace cradle::tools

@@ -1,5 +1,5 @@
-// What is chosen by the scalar type of a scene: its name, the digits of MPFR, engines and roundings (any_engine.hpp).
-#include "cradle/tools/engines/precision.hpp"
+// What is chosen by the scalar type of a scene: its name, the digits of MPFR, engines and roundings.
+#include "cradle/tools/engines/any_engine.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,6 @@
 #include <type_traits>
 
 #include "cradle/precision/scalars.hpp"
-#include "cradle/tools/engines/any_engine.hpp"
 
 namespace cradle::tools {
 

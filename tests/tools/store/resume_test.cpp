@@ -1,5 +1,5 @@
 // Runs that are stopped anywhere and resumed end in the bytes of an uninterrupted run: law x scalar type x coordinates
-// x initial state x policy x threads x where it is cut.
+// x initial state x policy x threads x where it is cut. (Later ends without a checkpoint: tests/tools/run/outputs.txt.)
 #include <ostream>
 
 #include "cradle/tests/tools/cases.hpp"
@@ -152,16 +152,6 @@ TEST_F(Resuming, ALaterEndGivesTheBytesOfASceneThatHadItFromTheBeginning) {
   }
 }
 
-// A run that was over before it had anything to lose has left no checkpoint: it is run again, to a later end.
-TEST_F(Resuming, WithoutACheckpointALaterEndIsRunFromTheStart) {
-  const Scene scene = dry_rows("output.checkpoint.every_seconds=0");
-  begin("a.h5", scene, {}, 1);
-  std::filesystem::remove(path("a.h5.checkpoint"));  // of a machine so slow that the run took two seconds
-  EXPECT_EQ(RunFiles(path("a.h5"), "120").resumed_from(), "");
-  ASSERT_EQ(resume("a.h5", "120", {}, 1).end, RunEnd::reached);
-  expect_as_in_one_go("a.h5");
-}
-
 // An extension whose journal has no checkpoint yet begins again from the result and its checkpoint.
 TEST_F(Resuming, AnExtensionStoppedBeforeItsFirstCheckpointBeginsAgain) {
   const Scene scene = dry_rows();
@@ -189,18 +179,6 @@ TEST_F(Resuming, ARunThatHasNothingToLoseWritesItsFileAlone) {
     EXPECT_FALSE(exists(name + ".part"));
   }
   EXPECT_TRUE(contents(path("a0.h5")) == contents(path("a1e-9.h5"))) << "other bytes";
-}
-
-// What is tabled at the end is of the whole run: of a longer one it is made anew.
-TEST_F(Resuming, TheWordOfALongerRunIsWrittenOnce) {
-  const Scene scene = parse_scene("law = { type = 'inelastic', restitution = 0.9, cutoff = 1e-3 }\nrun.until = 50\n"
-                                  "initial = { type = 'list', x = [0, 1, 2.3], v = [1, 0, -1.1] }\n"
-                                  "walls = { left = { position = -1 }, right = { position = 4 } }\n"
-                                  "output = { series.every = 10, word = 'any', events = true }\n",
-                                  "scene.toml", {from_the_start});
-  begin("a.h5", scene, {}, 1);
-  ASSERT_EQ(resume("a.h5", "80", {}, 1).end, RunEnd::reached);
-  expect_as_in_one_go("a.h5");
 }
 
 // A run whose result could not be written is finished before it is extended: its last sample belongs to its end.

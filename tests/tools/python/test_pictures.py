@@ -11,7 +11,7 @@ from cradle import program
 
 
 def kinds():
-    """Of each kind: its name, the names of the pictures beside the main one, the words of its command and its status."""
+    """Of each kind: its name, the names of pictures beside the main one, the words of its command and its status."""
     with open(os.path.join(os.path.dirname(__file__), "pictures.txt"), encoding="utf-8") as file:
         for part in re.sub("(?m)^#.*\n", "", file.read()).strip().split("\n\n"):
             head, command = part.strip().split("\n", 1)

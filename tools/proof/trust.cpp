@@ -263,9 +263,10 @@ std::string trust_table(const Scene& scene, const std::vector<Trusted>& runs) {
           "t_c: of the collapse time. 6 digits until: the last sample up to which energy and front share that many.\n"
           "proved: until when these collisions are proved to be those of the exact system (cradle certify); -: none.\n";
   if (!scene.run.stop_gap && status_of_text(runs.back().outcome) == Exit::collapse)
-    text += "Each run ends where its own precision has settled the collapse, after a number of collisions of its own, "
-            "so that the ends are not compared: with a run.stop_gap, 1e-20 say, all of them end at the same gap and "
-            "can be compared up to there.\n";
+    text +=
+        "Each run ends in the collapse where its own precision decides, maybe after another number of collisions, so "
+        "that the ends are not compared: with a run.stop_gap, 1e-20 say, all of them end at the same gap and "
+        "can be compared up to there.\n";
   return text;
 }
 

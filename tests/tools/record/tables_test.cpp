@@ -79,7 +79,9 @@ TEST(Profiles, WithoutARangeHoldAllParticlesThatHaveCollided) {
     for (std::size_t t = 2; t <= 60; ++t) {
       const std::string table = fmt::format("profiles/{:04}", t);
       const std::vector<double> x = values(table, "x"), density = values(table, "density");
-      EXPECT_NEAR(std::accumulate(density.begin(), density.end(), 0.) * (x[1] - x[0]), particles[t], 1e-9) << law << t;
+      EXPECT_NEAR(std::accumulate(density.begin(), density.end(), 0.) * (x[1] - x[0]),
+                  static_cast<double>(particles[t]), 1e-9)
+          << law << t;
     }
   }
 }

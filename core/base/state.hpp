@@ -243,8 +243,8 @@ inline void require_state(bool holds, const char* what) {
   require(holds, "a state that cannot be (", what, "): take the file from a copy");
 }
 
-// States that are too large for memory are saved to and loaded from these streams of bytes, which have a buffer. What is
-// behind the buffer, a file with its checksum for instance, is the business of who derives from them.
+// States that are too large for memory are saved to and loaded from these streams of bytes, which have a buffer. What
+// is behind the buffer, a file with its checksum for instance, is the business of who derives from them.
 class StateSink {
  public:
   void put(const void* data, std::size_t size) {

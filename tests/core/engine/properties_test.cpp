@@ -59,15 +59,20 @@ template <class Run> void expect_conservation(Run run, const Case& scene) {
     const double velocity_error = 6 * u * std::sqrt(2 * 3 * squares);
     const double flight_error = 4 * u * largest_closing_speed * t;
     const auto c = configuration_at(run, t);
+    const double length = scene.particles->circumference();
     EXPECT_LE(std::abs(momentum_gained(c, *scene.particles)), velocity_error * mass);
     for (std::size_t j = 0; j < c.gap.size(); ++j) {
       ASSERT_GE(c.gap[j], -flight_error) << j;
-      ASSERT_GE(c.x[j + 1] - c.x[j], -flight_error - 2 * u * std::abs(c.x[j])) << j;
-      ASSERT_EQ(c.index[j + 1], (c.index[j] + 1) % scene.particles->count());
+      const std::size_t next = (j + 1) % c.x.size();
+      const double around = next == 0 ? length : 0;
+      ASSERT_GE(c.x[next] + around - c.x[j], -flight_error - 2 * u * std::abs(c.x[j])) << j;
+      ASSERT_EQ(c.index[next], (c.index[j] + 1) % scene.particles->count());
     }
     const double ledger = scene.particles->kinetic_energy() - run.energy_lost();
     const double direct = kinetic_energy(c, *scene.particles);
-    EXPECT_NEAR(ledger, direct, velocity_error * std::sqrt(2 * direct * mass));
+    // What the gaps of a closed gas miss compresses it, and its energy grows as the length to the power -2.
+    const double compression = length > 0 ? 2 * velocity_error * t / length : 0;
+    EXPECT_NEAR(ledger, direct, velocity_error * std::sqrt(2 * direct * mass) + 2 * direct * compression);
     ASSERT_EQ(c.closure_speed.has_value(), !in_positions);
     ASSERT_EQ(c.closure_gap.has_value(), !in_positions);
     EXPECT_LE(std::abs(c.closure_speed.value_or(0)), velocity_error);

@@ -171,7 +171,7 @@ template <Real T> void require_sums(const Particles<T>& particles) {
   require_digits(farthest == T(0) || !(T(particles.total_mass() * farthest) < least),
                  "the mass times the position of all particles", "distances");
   if (!(T(energy * T(std::numeric_limits<T>::epsilon())) < least)) return;
-  bool move = is_positive(energy);  // of particles at rest there is none; a million are looked at
+  bool move = is_positive(energy);  // particles at rest have no energy; the first million are checked
   for (ParticleIndex k = 0; k < std::min(particles.count(), ParticleIndex{1} << 20) && !move; ++k)
     move = !(particles.velocity(k) == T(0));
   require_digits(!move, "the kinetic energy of all particles", "speeds");

@@ -19,8 +19,8 @@
 
 namespace cradle::tools {
 
-/// How a run, a replica or a proof ends. One table gives the text in results and the exit status. The
-/// first five are also outcomes of replicas. Files store these numbers.
+/// How a run, a replica or a proof ends. One table gives the text in results and the exit status. The first five are
+/// also outcomes of replicas. Files store these numbers.
 enum class RunEnd : std::uint64_t {
   reached,
   collapsed,

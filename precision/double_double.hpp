@@ -16,8 +16,8 @@
 #include <limits>
 #include <string>
 #include <string_view>
-#include <tuple>
 
+#include "cradle/core/base/fields.hpp"
 #include "cradle/precision/text.hpp"
 
 namespace cradle {
@@ -41,7 +41,7 @@ class double_double {
   constexpr double high() const { return high_; }
   constexpr double low() const { return low_; }
   explicit constexpr operator double() const { return high_; }
-  static auto state(auto& self) { return std::tie(self.high_, self.low_); }
+  static auto state(auto& self) { return fields(self.high_, self.low_); }
 
   // g++ 12 makes calls of some of these, which costs the event loop a fifth of its time: they are always inlined.
   friend constexpr double_double operator-(const double_double& x) { return {-x.high_, -x.low_}; }

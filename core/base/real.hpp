@@ -9,7 +9,8 @@
 #include <cstring>
 #include <limits>
 #include <stdexcept>
-#include <tuple>
+
+#include "cradle/core/base/fields.hpp"
 
 namespace cradle {
 
@@ -110,7 +111,7 @@ template <Real T> struct Pair {
   T low{0};
 
   T value() const { return high + low; }
-  static auto state(auto& self) { return std::tie(self.high, self.low); }
+  static auto state(auto& self) { return fields(self.high, self.low); }
 };
 
 // a + b without error in types that round to the nearest number; in double-double exact up to its last digits.
@@ -151,7 +152,7 @@ template <Real T> struct CompensatedSum {
   }
   T value() const { return sum + errors; }
   Pair<T> pair() const { return two_sum(sum, errors); }
-  static auto state(auto& self) { return std::tie(self.sum, self.errors); }
+  static auto state(auto& self) { return fields(self.sum, self.errors); }
 };
 
 }  // namespace cradle

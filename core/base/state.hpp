@@ -19,13 +19,13 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
-#include <tuple>
 #include <type_traits>
 #include <unordered_map>
 #include <utility>
 #include <variant>
 #include <vector>
 
+#include "cradle/core/base/fields.hpp"
 #include "cradle/core/base/require.hpp"
 
 namespace cradle {
@@ -57,8 +57,6 @@ template <class X> inline constexpr bool is_whole = std::is_integral_v<X> || std
 template <std::floating_point X>
 inline constexpr std::size_t bytes_of = std::numeric_limits<X>::digits == 64 ? 10 : sizeof(X);
 
-template <class X> using Plain = std::remove_cvref_t<X>;
-
 // The least number of bytes of a value, which limits how many of them a file can contain.
 template <class X> constexpr std::size_t least_bytes() {
   if constexpr (is_whole<X>) {
@@ -70,8 +68,8 @@ template <class X> constexpr std::size_t least_bytes() {
   } else if constexpr (is_plain<X> || is_sequence<X> || is_map<X> || is<X, std::optional> || is<X, std::variant>) {
     return 8;
   } else if constexpr (ListsState<X>) {
-    return []<class... F>(std::type_identity<std::tuple<F...>>) {
-      return (std::size_t{1} + ... + least_bytes<Plain<F>>()) - (sizeof...(F) > 0 ? 1 : 0);
+    return []<class With, class... F>(std::type_identity<Fields<With, F...>>) {
+      return (std::size_t{1} + ... + least_bytes<F>()) - (sizeof...(F) > 0 ? 1 : 0);
     }(std::type_identity<decltype(X::state(std::declval<X&>()))>{});
   } else {
     return 1;
@@ -116,7 +114,7 @@ template <class To, class X> void save(To& to, const X& x) {
     save(to, x.index());
     std::visit([&](const auto& value) { save(to, value); }, x);
   } else if constexpr (ListsState<X>) {
-    std::apply([&](const auto&... field) { (save(to, field), ...); }, X::state(x));
+    X::state(x)([&](const auto&... field) { (save(to, field), ...); });
   } else {
     SavedNumber<X>::save(to, x);
   }
@@ -164,7 +162,7 @@ template <class From, class X> void load(From& from, X& x) {
     }
     (std::make_index_sequence<std::variant_size_v<X>>{});
   } else if constexpr (ListsState<X>) {
-    std::apply([&](auto&... field) { (load(from, field), ...); }, X::state(x));
+    X::state(x)([&](auto&... field) { (load(from, field), ...); });
     if constexpr (requires { x.loaded(); }) x.loaded();
   } else {
     SavedNumber<X>::load(from, x);
@@ -225,8 +223,8 @@ template <class X> void append_shape(std::string& shape) {
       append_shapes<A...>(shape, "<", ">");
     }(std::type_identity<X>{});
   } else if constexpr (ListsState<X>) {
-    [&]<class... F>(std::type_identity<std::tuple<F...>>) {
-      append_shapes<detail::Plain<F>...>(shape, "(", ")");
+    [&]<class With, class... F>(std::type_identity<Fields<With, F...>>) {
+      append_shapes<F...>(shape, "(", ")");
     }(std::type_identity<decltype(X::state(std::declval<X&>()))>{});
   } else {
     shape += 'n';

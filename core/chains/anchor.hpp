@@ -2,8 +2,7 @@
 // Particles whose flight is known, from which the positions and velocities of the others are computed: a particle that
 // has not collided, or the last one at an end of a line, which is followed from collision to collision.
 
-#include <tuple>
-
+#include "cradle/core/base/fields.hpp"
 #include "cradle/core/initial/particles.hpp"
 #include "cradle/core/queue/clock.hpp"
 
@@ -11,7 +10,7 @@ namespace cradle {
 
 template <Real T> struct Flight {
   Pair<T> x, v;
-  static auto state(auto& self) { return std::tie(self.x, self.v); }
+  static auto state(auto& self) { return fields(self.x, self.v); }
 };
 
 // What gravity adds in a time to the velocity and to the place of every particle.
@@ -75,7 +74,7 @@ template <Real T> class Anchor {
     collided_ = true;
   }
   void move_origin(const T& by) { since_ = since_ - by; }
-  static auto state(auto& self) { return std::tie(self.particle_, self.collided_, self.from_, self.since_); }
+  static auto state(auto& self) { return fields(self.particle_, self.collided_, self.from_, self.since_); }
 
  private:
   ParticleIndex particle_ = 0;

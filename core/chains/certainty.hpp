@@ -7,9 +7,9 @@
 #include <algorithm>
 #include <cstddef>
 #include <limits>
-#include <tuple>
 #include <utility>
 
+#include "cradle/core/base/fields.hpp"
 #include "cradle/core/chains/watched_gap.hpp"
 #include "cradle/core/laws/law.hpp"
 #include "cradle/core/queue/event_queue.hpp"
@@ -156,7 +156,7 @@ template <Real T, class Gaps> class Certainty {
   }
 
   static auto state(auto& self) {
-    return std::tie(self.roundings_, self.last_[0], self.last_[1], self.delay_[0], self.delay_[1]);
+    return fields(self.roundings_, self.last_[0], self.last_[1], self.delay_[0], self.delay_[1]);
   }
 
  private:

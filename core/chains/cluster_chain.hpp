@@ -89,7 +89,7 @@ template <Real T> class ClusterChain : public ClusterPlaces<T> {
   }
 
   static auto state(auto& self) {
-    return std::tie(self.line_, self.range_, self.vacated_, self.active_, self.beyond_, self.centre_, self.carried_);
+    return fields(self.line_, self.range_, self.vacated_, self.active_, self.beyond_, self.centre_, self.carried_);
   }
   void loaded() const {
     const auto& cells = line_.gaps;

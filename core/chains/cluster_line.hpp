@@ -7,9 +7,9 @@
 // right one's is vacant until the chain is laid out anew.
 
 #include <concepts>
-#include <tuple>
 #include <utility>
 
+#include "cradle/core/base/fields.hpp"
 #include "cradle/core/chains/chain.hpp"
 #include "cradle/core/chains/timed_gaps.hpp"
 #include "cradle/core/laws/law.hpp"
@@ -23,8 +23,7 @@ template <Real T> struct alignas(std::same_as<T, double> ? 64 : alignof(T)) Cell
   Slot left = 0, right = 0;
 
   static auto state(auto& self) {
-    return std::tuple_cat(TimedGap<T>::state(self),
-                          std::tie(self.velocity, self.mass, self.left, self.right, self.particle));
+    return fields(TimedGap<T>::state(self), self.velocity, self.mass, self.left, self.right, self.particle);
   }
 };
 
@@ -42,7 +41,7 @@ template <Real T> class ClusterLine {
   }
 
   Gaps gaps;
-  static auto state(auto& self) { return std::tie(self.gaps); }
+  static auto state(auto& self) { return fields(self.gaps); }
 
   // ---- slots; a vacant one is linked to itself
   Slot left(Slot s) const { return gaps[s].left; }

@@ -72,7 +72,7 @@ template <Real T, class Masses = IdenticalMasses<T>> class GapChain : public Gap
   }
 
   static auto state(auto& self) {
-    return std::tie(self.line_, self.range_, self.memory_, self.left_, self.right_, self.walls_, self.wall_gaps_);
+    return fields(self.line_, self.range_, self.memory_, self.left_, self.right_, self.walls_, self.wall_gaps_);
   }
 
   // Checks what was loaded: whether its parts fit together and its numbers are some that gaps can have.

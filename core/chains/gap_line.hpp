@@ -4,10 +4,10 @@
 // its owner: by the chain (gap_chain.hpp), or by a segment, which works on a copy of a part of the line (segments.hpp).
 
 #include <cstddef>
-#include <tuple>
 #include <type_traits>
 #include <utility>
 
+#include "cradle/core/base/fields.hpp"
 #include "cradle/core/chains/certainty.hpp"
 #include "cradle/core/chains/chain.hpp"
 #include "cradle/core/chains/masses.hpp"
@@ -18,7 +18,7 @@ namespace cradle {
 
 // Stands in for `Certainty` in a line whose masses are not watched; it holds nothing.
 struct NothingMore {
-  static std::tuple<> state(auto&) { return {}; }
+  static auto state(auto&) { return fields(); }
 };
 
 template <Real T, class MassesOf> class GapLine {
@@ -43,7 +43,7 @@ template <Real T, class MassesOf> class GapLine {
   ParticleIndex particle_of_slot_0 = 0;
   [[no_unique_address]] std::conditional_t<watched, Certainty<T, Gaps>, NothingMore> certainty;
 
-  static auto state(auto& self) { return std::tie(self.gaps, self.masses, self.particle_of_slot_0, self.certainty); }
+  static auto state(auto& self) { return fields(self.gaps, self.masses, self.particle_of_slot_0, self.certainty); }
 
   // Whether sums of closing speeds are exact.
   bool exact_sums() const { return watched && exact_; }

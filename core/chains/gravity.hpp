@@ -6,6 +6,7 @@
 // Which gap that is follows from how many there are, in particles from the wall (gap_chain.hpp). A single particle
 // that rests is a pile where there is another wall, too: the gap to that wall then does not close by gravity.
 
+#include "cradle/core/base/fields.hpp"
 #include "cradle/core/initial/particles.hpp"
 #include "cradle/core/laws/wall_approach.hpp"
 
@@ -125,7 +126,7 @@ template <Real T> class Gravity {
     return outcome;
   }
 
-  static auto state(auto& self) { return std::tie(self.resting_); }
+  static auto state(auto& self) { return fields(self.resting_); }
   void loaded() {
     require_state(resting_ >= 0 && resting_ <= (piles_ ? count_ : 0), "pile");
     rest(resting_);

@@ -5,6 +5,7 @@
 #include <initializer_list>
 #include <optional>
 
+#include "cradle/core/base/fields.hpp"
 #include "cradle/core/chains/anchor.hpp"
 #include "cradle/core/chains/gap_line.hpp"
 #include "cradle/core/chains/held_range.hpp"
@@ -40,7 +41,7 @@ template <Real T> class CollisionMemory {
     never_ -= by;
   }
   std::size_t slots() const { return last_.size(); }  // 0: nothing is recorded yet
-  static auto state(auto& self) { return std::tie(self.last_, self.never_); }
+  static auto state(auto& self) { return fields(self.last_, self.never_); }
 
  private:
   std::vector<T> last_;  // local times

@@ -12,10 +12,10 @@
 #include <algorithm>
 #include <cstddef>
 #include <memory>
-#include <tuple>
 #include <utility>
 #include <vector>
 
+#include "cradle/core/base/fields.hpp"
 #include "cradle/core/initial/particles.hpp"
 #include "cradle/core/queue/account.hpp"
 #include "cradle/core/queue/clock.hpp"
@@ -106,8 +106,8 @@ class HeldRange {
   }
 
   static auto state(auto& self) {
-    return std::tie(self.extent_, self.first_, self.last_, self.front_left_, self.front_right_, self.unheld_left_,
-                    self.unheld_right_);
+    return fields(self.extent_, self.first_, self.last_, self.front_left_, self.front_right_, self.unheld_left_,
+                  self.unheld_right_);
   }
   // Whether it can be the range of a chain with so many slots. They hold all of the `count` particles but the unheld
   // ones or, after mergers, fewer.

@@ -5,9 +5,9 @@
 
 #include <algorithm>
 #include <limits>
-#include <tuple>
 #include <vector>
 
+#include "cradle/core/base/fields.hpp"
 #include "cradle/core/initial/particles.hpp"
 #include "cradle/core/laws/law.hpp"
 #include "cradle/core/queue/event_queue.hpp"
@@ -24,7 +24,7 @@ template <Real T> struct IdenticalMasses {
             particles.mass(other), "): use GapChain<T, IndividualMasses<T>>");
   }
   T mass, reduced_mass;
-  static std::tuple<> state(auto&) { return {}; }
+  static auto state(auto&) { return fields(); }
   IdenticalMasses without_slots() const { return *this; }
   bool fits(std::size_t) const { return true; }
   void resize(std::size_t) {}
@@ -39,7 +39,7 @@ template <Real T> struct IndividualMasses {
   explicit IndividualMasses(const Particles<T>&) {}
   IndividualMasses without_slots() const { return IndividualMasses(); }
   std::vector<T> masses;  // of the particle on the left of each slot
-  static auto state(auto& self) { return std::tie(self.masses); }
+  static auto state(auto& self) { return fields(self.masses); }
   bool fits(std::size_t slots) const { return masses.size() == slots; }
   void resize(std::size_t slots) { masses.resize(slots, T(1)); }
   void copy(const IndividualMasses& other, Slot from, Slot to, std::size_t particles) {

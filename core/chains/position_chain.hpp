@@ -135,8 +135,8 @@ template <Real T> class PositionChain {
   const Particles<T>& particles() const { return *of_walls_; }
 
   static auto state(auto& self) {
-    return std::tie(self.particles_, self.due_, self.closing_, self.floor_, self.origin_, self.front_left_,
-                    self.front_right_, self.account_, self.lost_, self.walls_);
+    return fields(self.particles_, self.due_, self.closing_, self.floor_, self.origin_, self.front_left_,
+                  self.front_right_, self.account_, self.lost_, self.walls_);
   }
   void loaded() const {
     const ParticleIndex all = count() + (walls_.has(End::left) ? 1 : 0) + (walls_.has(End::right) ? 1 : 0);
@@ -196,7 +196,7 @@ template <Real T> class PositionChain {
   struct Particle {
     T x, v, time, m;  // time: of the last collision, or the start
     bool collided = false;
-    static auto state(auto& self) { return std::tie(self.x, self.v, self.time, self.m, self.collided); }
+    static auto state(auto& self) { return fields(self.x, self.v, self.time, self.m, self.collided); }
     bool holds_numbers() const { return is_finite(x) && is_finite(v) && is_finite(time) && is_positive(m); }
     bool rested(const T& now, const T& contact_time) const { return !collided || !(now - time < contact_time); }
   };

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <concepts>
 #include <cstddef>
-#include <tuple>
 #include <utility>
 #include <vector>
 
+#include "cradle/core/base/fields.hpp"
 #include "cradle/core/base/large_pages.hpp"
 #include "cradle/core/base/real.hpp"
 #include "cradle/core/queue/event_queue.hpp"
@@ -23,13 +23,13 @@ template <Real T> struct TimedGap {
   bool fits(const T& closing) const {
     return is_finite(gap) && is_finite(time) && is_finite(lost) && is_finite(closing);
   }
-  static auto state(auto& self) { return std::tie(self.gap, self.time, self.lost); }
+  static auto state(auto& self) { return fields(self.gap, self.time, self.lost); }
 };
 template <Real T>
 requires(Ledger<T>::in_any_order) struct TimedGap<T> {
   T gap{1}, time{0};
   bool fits(const T& closing) const { return is_finite(gap) && is_finite(time) && is_finite(closing); }
-  static auto state(auto& self) { return std::tie(self.gap, self.time); }
+  static auto state(auto& self) { return fields(self.gap, self.time); }
 };
 // In double the time of the next collision is its own key. It is stored, which saves a division at the collision.
 template <> struct TimedGap<double> {
@@ -38,7 +38,7 @@ template <> struct TimedGap<double> {
     return is_finite(gap) && is_finite(time) && is_finite(closing) &&
            (closing > 0 ? due == due : due == EventQueue::never);
   }
-  static auto state(auto& self) { return std::tie(self.gap, self.time, self.due); }
+  static auto state(auto& self) { return fields(self.gap, self.time, self.due); }
 };
 
 template <Real T, std::derived_from<TimedGap<T>> Cell> class TimedCells {

@@ -53,8 +53,7 @@ template <Real T, std::derived_from<TimedGap<T>> Cell> class TimedGaps : public 
   void set_ledger(const Ledger<T>& ledger) { lost_ = ledger; }
 
   static auto state(auto& self) {
-    return std::tie(self.cells_, self.lag_, self.clock_, self.floor_, self.blur_, self.shift_, self.account_,
-                    self.lost_);
+    return fields(self.cells_, self.lag_, self.clock_, self.floor_, self.blur_, self.shift_, self.account_, self.lost_);
   }
   void loaded() const {
     require_state(lag_.size() == cells_.size(), "lists");

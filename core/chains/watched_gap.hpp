@@ -39,9 +39,9 @@
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
-#include <tuple>
 
 #include "cradle/core/base/counter_rng.hpp"
+#include "cradle/core/base/fields.hpp"
 #include "cradle/core/base/real.hpp"
 #include "cradle/core/chains/timed_cells.hpp"
 #include "cradle/core/initial/particles.hpp"
@@ -51,7 +51,7 @@ namespace cradle {
 // 32 bytes in double, two in a line of the cache.
 template <Real T> struct alignas(std::same_as<T, double> ? 32 : alignof(T)) Gap : TimedGap<T> {
   T closing{-1};
-  static auto state(auto& self) { return std::tuple_cat(TimedGap<T>::state(self), std::tie(self.closing)); }
+  static auto state(auto& self) { return fields(TimedGap<T>::state(self), self.closing); }
 };
 
 // Deviations need few digits, but the range of the scalar type: gaps of 1e-1000 have smaller deviations.
@@ -90,14 +90,14 @@ template <Real N> struct Deviation {
     }
   }
   static N largest(const Samples& of) { return std::max<N>(magnitude(of[0]), magnitude(of[1])); }
-  static auto state(auto& self) { return std::tie(self.gap[0], self.gap[1], self.closing[0], self.closing[1]); }
+  static auto state(auto& self) { return fields(self.gap[0], self.gap[1], self.closing[0], self.closing[1]); }
 };
 
 template <Real T> struct WatchedGap : Gap<T> {
   T rest{0};
   Deviation<DeviationNumber<T>> off;
   bool fits(const T& speed) const { return Gap<T>::fits(speed) && is_finite(rest); }
-  static auto state(auto& self) { return std::tuple_cat(Gap<T>::state(self), std::tie(self.rest, self.off)); }
+  static auto state(auto& self) { return fields(Gap<T>::state(self), self.rest, self.off); }
 };
 
 // Pseudo-random numbers from -1 to 1: either in sequence, the same for the same collisions; or for a given number,
@@ -115,7 +115,7 @@ template <Real N> class Roundings {
     const std::uint64_t bits = splitmix64(std::bit_cast<std::uint64_t>(number) + sample * step) >> 11;
     return N(static_cast<std::int64_t>(bits)) / N(std::int64_t{1} << 52) - N(1);
   }
-  static auto state(auto& self) { return std::tie(self.counter_, self.bits_, self.left_); }
+  static auto state(auto& self) { return fields(self.counter_, self.bits_, self.left_); }
 
  private:
   static constexpr std::uint64_t step = 0x9E3779B97F4A7C15;

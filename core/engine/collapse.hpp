@@ -7,9 +7,9 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
-#include <tuple>
 #include <unordered_map>
 
+#include "cradle/core/base/fields.hpp"
 #include "cradle/core/chains/chain.hpp"
 #include "cradle/core/engine/collapse_ahead.hpp"
 
@@ -32,8 +32,8 @@ template <class T, class Time = Pair<T>> struct CollapseReport {
   T uncertainty{0}, ratio{0}, ratio_uncertainty{0};
 
   static auto state(auto& self) {
-    return std::tie(self.last_collision, self.interval, self.gap, self.particle, self.settled, self.time,
-                    self.uncertainty, self.ratio, self.ratio_uncertainty);
+    return fields(self.last_collision, self.interval, self.gap, self.particle, self.settled, self.time,
+                  self.uncertainty, self.ratio, self.ratio_uncertainty);
   }
 };
 
@@ -43,7 +43,7 @@ template <Real T> struct KnownCollapse {
   Pair<T> time;
   T uncertainty{0}, ratio{0}, ratio_uncertainty{0};
   static auto state(auto& self) {
-    return std::tie(self.collisions, self.time, self.uncertainty, self.ratio, self.ratio_uncertainty);
+    return fields(self.collisions, self.time, self.uncertainty, self.ratio, self.ratio_uncertainty);
   }
 };
 
@@ -57,7 +57,7 @@ template <Real T> struct CollapseWatch {
   T fastest{0};            // largest closing or opening speed of a gap until now
   T greatest_approach{0};  // largest speed at which any two particles can ever approach
   GapErrors<T> errors;     // of all gaps, for few particles in a chain of gaps
-  static auto state(auto& self) { return std::tie(self.last, self.known, self.report, self.fastest, self.errors); }
+  static auto state(auto& self) { return fields(self.last, self.known, self.report, self.fastest, self.errors); }
 
   // Call it before the first collision; `least` is the smallest gap. Returns the floor: gaps below it beside a
   // collision are inspected. For few particles, whose rounding errors are least before their first collisions, all gaps

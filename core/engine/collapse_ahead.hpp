@@ -7,9 +7,9 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <tuple>
 #include <unordered_map>
 
+#include "cradle/core/base/fields.hpp"
 #include "cradle/core/base/real.hpp"
 #include "cradle/core/chains/masses.hpp"
 #include "cradle/core/initial/particles.hpp"
@@ -30,7 +30,7 @@ template <Real T> struct Roundoff {
 // Bounds on the errors of a gap at some time, and of its closing speed.
 template <Real T> struct GapError {
   T gap{0}, speed{0};
-  static auto state(auto& self) { return std::tie(self.gap, self.speed); }
+  static auto state(auto& self) { return fields(self.gap, self.speed); }
 };
 
 // Bounds on the errors of the outcome of a collision at the speed 1, computed from the law's decimals.
@@ -115,13 +115,13 @@ template <Real T> class GapErrors {
   void origin_moved(const T& by) {
     for (auto& [particle, line] : gaps_) line.time -= by;
   }
-  static auto state(auto& self) { return std::tie(self.gaps_); }
+  static auto state(auto& self) { return fields(self.gaps_); }
 
  private:
   struct Line {
     T time{0}, closing{0};  // of the last collision at it or beside it, and the closing speed after it
     GapError<T> off;        // at that time
-    static auto state(auto& self) { return std::tie(self.time, self.closing, self.off); }
+    static auto state(auto& self) { return fields(self.time, self.closing, self.off); }
   };
   std::unordered_map<ParticleIndex, Line> gaps_;
 };

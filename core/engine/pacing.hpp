@@ -11,8 +11,8 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <tuple>
 
+#include "cradle/core/base/fields.hpp"
 #include "cradle/core/chains/chain.hpp"
 
 namespace cradle {
@@ -102,8 +102,8 @@ template <Real T> struct Pacing {
            (!in_epochs || (is_positive(epoch) && !(epoch_end < last_collision)));
   }
   static auto state(auto& self) {
-    return std::tie(self.next_review, self.collisions_at_move, self.collisions_before, self.time_before, self.in_epochs,
-                    self.epoch, self.epoch_end, self.expected, self.next_poll, self.most_collisions);
+    return fields(self.next_review, self.collisions_at_move, self.collisions_before, self.time_before, self.in_epochs,
+                  self.epoch, self.epoch_end, self.expected, self.next_poll, self.most_collisions);
   }
 
  private:
@@ -157,7 +157,7 @@ template <Real T> struct Standstill {
   std::uint64_t collisions_then = 0;  // number of collisions when time or elapsed advanced last
   std::uint64_t collisions_at_elapsed = 0;
   static auto state(auto& self) {
-    return std::tie(self.time, self.elapsed, self.collisions_then, self.collisions_at_elapsed);
+    return fields(self.time, self.elapsed, self.collisions_then, self.collisions_at_elapsed);
   }
 
   // Whether time stands still; asked at a review, with local time, time since the start, collisions made and active

@@ -105,7 +105,7 @@ class Simulation : public Readings<Chain> {
   // Checkpoint state (state.hpp), between calls of `advance`: everything that later collisions depend on, except law,
   // particles and policy.
   static auto state(auto& self) {
-    return std::tie(self.chain_, self.last_collision_, self.counts_, self.pacing_, self.standstill_, self.watch_);
+    return fields(self.chain_, self.last_collision_, self.counts_, self.pacing_, self.standstill_, self.watch_);
   }
   void loaded() {
     const T since = last_collision_time() - chain_.start();

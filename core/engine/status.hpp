@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
-#include <tuple>
 
+#include "cradle/core/base/fields.hpp"
 #include "cradle/core/chains/chain.hpp"
 #include "cradle/core/engine/collapse.hpp"
 
@@ -32,7 +32,7 @@ struct Counts {
     return *this;
   }
   static auto state(auto& self) {  // close calls depend on how a run was computed
-    return std::tie(self.collisions, self.below_cutoff, self.merges, self.origin_moves);
+    return fields(self.collisions, self.below_cutoff, self.merges, self.origin_moves);
   }
 };
 

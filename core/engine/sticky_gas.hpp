@@ -120,7 +120,7 @@ template <Real T> class StickyGas {
 
   Configuration<T> configuration_at_last_collision() const { return configuration(time_); }
 
-  static auto state(auto& self) { return std::tie(self.time_, self.elapsed_, self.held_, self.counts_, self.lost_); }
+  static auto state(auto& self) { return fields(self.time_, self.elapsed_, self.held_, self.counts_, self.lost_); }
   void loaded() const {
     require_state(!held_.empty(), "no particles");
     const ParticleIndex count = particles_->count();
@@ -145,8 +145,8 @@ template <Real T> class StickyGas {
     T greatest;  // mass of the heaviest particle
 
     static auto state(auto& self) {
-      return std::tie(self.mass, self.moment, self.momentum, self.x, self.first, self.count, self.heaviest,
-                      self.greatest);
+      return fields(self.mass, self.moment, self.momentum, self.x, self.first, self.count, self.heaviest,
+                    self.greatest);
     }
     bool holds_numbers() const {
       return is_positive(mass) && is_positive(greatest) && is_finite(T(mass + greatest)) && is_finite(moment) &&

@@ -13,9 +13,10 @@
 #include <limits>
 #include <span>
 #include <stdexcept>
-#include <tuple>
 #include <utility>
 #include <vector>
+
+#include "cradle/core/base/fields.hpp"
 
 namespace cradle {
 
@@ -37,7 +38,7 @@ struct Moments {
   }
 
   static auto state(auto& self) {
-    return std::tie(self.replicas, self.mean, self.squares, self.least, self.greatest, self.counts);
+    return fields(self.replicas, self.mean, self.squares, self.least, self.greatest, self.counts);
   }
   bool operator==(const Moments&) const = default;
 };
@@ -129,7 +130,7 @@ struct FixedBins {
   double edge(std::size_t k) const {
     return k == bins ? to : from + (to - from) * (static_cast<double>(k) / static_cast<double>(bins));
   }
-  static auto state(auto& self) { return std::tie(self.from, self.to, self.bins); }
+  static auto state(auto& self) { return fields(self.from, self.to, self.bins); }
   bool operator==(const FixedBins&) const = default;
 };
 

@@ -24,10 +24,10 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
-#include <tuple>
 #include <utility>
 #include <vector>
 
+#include "cradle/core/base/fields.hpp"
 #include "cradle/core/ensemble/statistics.hpp"
 
 namespace cradle {
@@ -38,7 +38,7 @@ struct ReplicaRange {
   ReplicaIndex first = 0;
   std::uint64_t count = 0;
   ReplicaIndex end() const { return first + count; }
-  static auto state(auto& self) { return std::tie(self.first, self.count); }
+  static auto state(auto& self) { return fields(self.first, self.count); }
   bool operator==(const ReplicaRange&) const = default;
 };
 
@@ -47,7 +47,7 @@ struct TreeNode {
   unsigned level = 0;
   Moments moments;
   ReplicaRange range() const { return {first, std::uint64_t{1} << level}; }
-  static auto state(auto& self) { return std::tie(self.first, self.level, self.moments); }
+  static auto state(auto& self) { return fields(self.first, self.level, self.moments); }
   bool operator==(const TreeNode&) const = default;
 };
 

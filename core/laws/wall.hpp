@@ -21,7 +21,6 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <tuple>
 
 #include "cradle/core/base/counter_rng.hpp"
 #include "cradle/core/base/state.hpp"
@@ -52,7 +51,7 @@ template <Real T> struct Wall {
 template <Real T> struct WallTally {
   std::uint64_t collisions = 0;
   CompensatedSum<T> given, momentum, dissipated;
-  static auto state(auto& self) { return std::tie(self.collisions, self.given, self.momentum, self.dissipated); }
+  static auto state(auto& self) { return fields(self.collisions, self.given, self.momentum, self.dissipated); }
   void loaded() const {
     for (const auto* sum : {&given, &momentum, &dissipated})
       require_state(is_finite(sum->sum) && is_finite(sum->errors), "walls");
@@ -132,7 +131,7 @@ template <Real T> class Walls {
   const WallTallies<T>& tallies() const { return tallies_; }
   void continue_with(const WallTally<T>& left, const WallTally<T>& right) { tallies_ = {left, right}; }
 
-  static auto state(auto& self) { return std::tie(self.tallies_[0], self.tallies_[1]); }
+  static auto state(auto& self) { return fields(self.tallies_[0], self.tallies_[1]); }
 
  private:
   static std::size_t at(End end) { return static_cast<std::size_t>(end); }

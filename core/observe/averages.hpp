@@ -85,7 +85,7 @@ class TimeAverages {
     return cradle::error_growth(means);
   }
 
-  static auto state(auto& self) { return std::tie(self.taken_, self.batches_, self.found_, self.frame_); }
+  static auto state(auto& self) { return fields(self.taken_, self.batches_, self.found_, self.frame_); }
   void loaded() const {
     require_state(batches_.size() == batches && taken_ <= samples_ && found_.size() == bins_ && frame_.size() == bins_,
                   "averages");
@@ -98,7 +98,7 @@ class TimeAverages {
     explicit Batch(std::size_t bins = 0) : sums(per_bin * bins) {}
     std::vector<double> sums;
     double samples = 0;
-    static auto state(auto& self) { return std::tie(self.sums, self.samples); }
+    static auto state(auto& self) { return fields(self.sums, self.samples); }
   };
   struct Seen {
     double x, v, m;

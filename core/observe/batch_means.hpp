@@ -92,7 +92,7 @@ class SampledMeans {
     return all;
   }
 
-  static auto state(auto& self) { return std::tie(self.taken_, self.weights_, self.sums_); }
+  static auto state(auto& self) { return fields(self.taken_, self.weights_, self.sums_); }
   void loaded() const {
     require_state(taken_ <= samples_ && weights_.size() == mean_batches && sums_.size() == numbers_, "samples");
   }

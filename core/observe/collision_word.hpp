@@ -11,7 +11,6 @@
 #include <cstdint>
 #include <deque>
 #include <string>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -28,7 +27,7 @@ class CollisionWord {
     std::string letters;
     std::uint64_t repeats = 1, first = 0;  // the number of its first collision, from 0
     double time = 0;                       // of that collision
-    static auto state(auto& self) { return std::tie(self.letters, self.repeats, self.first, self.time); }
+    static auto state(auto& self) { return fields(self.letters, self.repeats, self.first, self.time); }
   };
 
   void add(std::size_t gap, double time) {
@@ -53,8 +52,8 @@ class CollisionWord {
   }
 
   static auto state(auto& self) {
-    return std::tie(self.blocks_, self.waiting_, self.recent_, self.head_, self.count_, self.written_, self.alive_,
-                    self.covered_, self.period_, self.start_);
+    return fields(self.blocks_, self.waiting_, self.recent_, self.head_, self.count_, self.written_, self.alive_,
+                  self.covered_, self.period_, self.start_);
   }
   void loaded() const {
     require_state(recent_.size() == std::min<std::uint64_t>(count_, most_recent) &&
@@ -69,7 +68,7 @@ class CollisionWord {
   struct Letter {
     std::uint64_t gap = 0;
     double time = 0;
-    static auto state(auto& self) { return std::tie(self.gap, self.time); }
+    static auto state(auto& self) { return fields(self.gap, self.time); }
   };
 
   // The open block takes letters until no period fits any more. A period of p letters is alive, bit p - 1, as long as

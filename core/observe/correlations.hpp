@@ -18,6 +18,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "cradle/core/base/fields.hpp"
 #include "cradle/core/chains/anchor.hpp"
 #include "cradle/core/chains/configuration.hpp"
 #include "cradle/core/observe/batch_means.hpp"
@@ -148,7 +149,7 @@ class Correlator {
     return all;
   }
 
-  static auto state(auto& self) { return std::tie(self.taken_, self.levels_, self.sums_); }
+  static auto state(auto& self) { return fields(self.taken_, self.levels_, self.sums_); }
   void loaded() const {
     require_state(sums_.size() == lags().size() * mean_batches * 2, "lags");
     for (const Level& level : levels_)
@@ -161,7 +162,7 @@ class Correlator {
  private:
   struct Level {
     std::vector<double> x, v;  // of all particles at one sample after the other
-    static auto state(auto& self) { return std::tie(self.x, self.v); }
+    static auto state(auto& self) { return fields(self.x, self.v); }
   };
 
   std::ptrdiff_t at(std::uint64_t entry) const { return static_cast<std::ptrdiff_t>(entry % held * particles_); }

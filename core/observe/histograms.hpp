@@ -75,7 +75,7 @@ class OctaveHistogram {
   void add(double x, std::uint64_t times = 1) { counts_[bins_(x)] += times; }
   const OctaveBins& bins() const { return bins_; }
   const std::vector<std::uint64_t>& counts() const { return counts_; }
-  static auto state(auto& self) { return std::tie(self.counts_); }
+  static auto state(auto& self) { return fields(self.counts_); }
   void loaded() const { require_state(counts_.size() == bins_.size(), "bins of a histogram"); }
 
  private:
@@ -125,8 +125,8 @@ template <Real T> class CollisionHistograms {
   }
 
   static auto state(auto& self) {
-    return std::tie(self.free_flights, self.pair_flights, self.closing_speeds, self.dissipative_speeds, self.pending_,
-                    self.below_cutoff_, self.first_, self.past_);
+    return fields(self.free_flights, self.pair_flights, self.closing_speeds, self.dissipative_speeds, self.pending_,
+                  self.below_cutoff_, self.first_, self.past_);
   }
   void loaded() const {
     const auto size = static_cast<ParticleIndex>(past_.size());
@@ -140,7 +140,7 @@ template <Real T> class CollisionHistograms {
     std::uint64_t collisions = 0;  // counted
     bool met = false, met_right = false;
     static auto state(auto& self) {
-      return std::tie(self.last, self.last_right, self.collisions, self.met, self.met_right);
+      return fields(self.last, self.last_right, self.collisions, self.met, self.met_right);
     }
   };
 

@@ -11,7 +11,6 @@
 #include <exception>
 #include <functional>
 #include <limits>
-#include <ranges>
 #include <vector>
 
 #include "cradle/core/chains/anchor.hpp"
@@ -69,9 +68,10 @@ struct WalkStopped : std::exception {
 // Calls visit(x, v, m) for every particle in a range, also for those that the fronts have not reached (anchor.hpp). On
 // a ring a finite range has all images of the particles that are in it, a circumference apart. There may be very many
 // particles: `stopped` is called from time to time; if it returns true, WalkStopped is thrown.
-template <Real T, class Visit>
+template <Real T>
 void for_each_particle(const Configuration<T>& c, const Particles<T>& particles, const T& elapsed, BinRange range,
-                       Visit visit, const std::function<bool()>& stopped = {}) {
+                       const std::function<void(double x, double v, double m)>& visit,
+                       const std::function<bool()>& stopped = {}) {
   const double length = to_double(particles.circumference());
   const bool images = length > 0 && std::isfinite(range.to - range.from);
   const double most_turns = images ? (range.to - range.from) / length + 2 : 0;
@@ -96,11 +96,16 @@ void for_each_particle(const Configuration<T>& c, const Particles<T>& particles,
   };
   // They fly in order: finds the first of [low, high) that is not to the left of the range, or that is to its right.
   const auto first = [&](ParticleIndex low, ParticleIndex high, const auto& is_before) {
-    return *std::ranges::partition_point(std::views::iota(low, std::max(low, high)),
-                                         [&](ParticleIndex particle) { return is_before(fly(particle)); });
+    while (low < high) {
+      const ParticleIndex middle = low + (high - low) / 2;
+      const bool before = is_before(fly(middle));
+      low = before ? middle + 1 : low;
+      high = before ? high : middle;
+    }
+    return low;
   };
-  const auto left_of_it = [&](double x) { return x < range.from; },
-             up_to_its_end = [&](double x) { return x <= range.to; };
+  const auto left_of_it = [&](double x) { return x < range.from; };
+  const auto up_to_its_end = [&](double x) { return x <= range.to; };
   for (ParticleIndex particle = first(0, c.from, up_to_its_end) - 1; particle >= 0; --particle) {
     const double x = fly(particle);
     if (x < range.from) break;

@@ -10,10 +10,10 @@
 #include <limits>
 #include <map>
 #include <optional>
-#include <tuple>
 #include <utility>
 #include <vector>
 
+#include "cradle/core/base/fields.hpp"
 #include "cradle/core/chains/configuration.hpp"
 
 namespace cradle {
@@ -101,8 +101,8 @@ struct Scenario {
 
   // The numbers known before the end.
   static auto state(auto& self) {
-    return std::tie(self.established, self.first_meeting, self.first_passed, self.passes, self.sticks,
-                    self.role_changes, self.regime);
+    return fields(self.established, self.first_meeting, self.first_passed, self.passes, self.sticks, self.role_changes,
+                  self.regime);
   }
 };
 
@@ -142,13 +142,13 @@ class ScenarioWatch {
     return found_;
   }
 
-  static auto state(auto& self) { return std::tie(self.pair_, self.meeting_, self.largest_, self.found_); }
+  static auto state(auto& self) { return fields(self.pair_, self.meeting_, self.largest_, self.found_); }
 
  private:
   struct Meeting {
     double time;
     std::uint64_t merges_before;
-    static auto state(auto& self) { return std::tie(self.time, self.merges_before); }
+    static auto state(auto& self) { return fields(self.time, self.merges_before); }
   };
 
   // A collision is reported before it is made: the count given with the next one shows whether it was a merge.

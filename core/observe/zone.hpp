@@ -80,7 +80,7 @@ class ZoneAverage {
     return {middle, 1.253 * 1.483 * median(widths) / std::sqrt(n)};
   }
 
-  static auto state(auto& self) { return std::tie(self.taken_, self.part_); }
+  static auto state(auto& self) { return fields(self.taken_, self.part_); }
   void loaded() const {
     require_state(part_.size() == parts && taken_ <= samples_, "samples");
     for (const Part& part : part_) require_state(part.size() == bins_, "bins");
@@ -90,7 +90,7 @@ class ZoneAverage {
   struct Bin {
     double mass = 0, right = 0, right_speed = 0, left = 0, left_speed = 0;
     static auto state(auto& self) {
-      return std::tie(self.mass, self.right, self.right_speed, self.left, self.left_speed);
+      return fields(self.mass, self.right, self.right_speed, self.left, self.left_speed);
     }
   };
   using Part = std::vector<Bin>;  // sums over the samples of one part of the time

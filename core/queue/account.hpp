@@ -3,8 +3,8 @@
 // or of what stands for that in a report.
 
 #include <cstdint>
-#include <tuple>
 
+#include "cradle/core/base/fields.hpp"
 #include "cradle/core/initial/particles.hpp"
 
 namespace cradle {
@@ -14,7 +14,7 @@ template <class T> struct Incident {
   T time{0};
   ParticleIndex particle = -1;  // the particle on the left of the gap
   T gap{0};
-  static auto state(auto& self) { return std::tie(self.time, self.particle, self.gap); }
+  static auto state(auto& self) { return fields(self.time, self.particle, self.gap); }
 };
 
 template <class T> struct Account {
@@ -33,8 +33,8 @@ template <class T> struct Account {
   Incident<T> first_uncertain;
 
   static auto state(auto& self) {
-    return std::tie(self.simultaneous, self.order_lost, self.first_order_lost, self.unresolved, self.first_unresolved,
-                    self.uncertain, self.first_uncertain);
+    return fields(self.simultaneous, self.order_lost, self.first_order_lost, self.unresolved, self.first_unresolved,
+                  self.uncertain, self.first_uncertain);
   }
 
   // Enters a gap that is not positive although no collision was made there.

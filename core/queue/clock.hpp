@@ -23,7 +23,7 @@ template <Real T> class Clock {
   Pair<T> since_start(const T& offset) const { return start_ == T(0) ? stamp(offset) : stamp(offset) - start_; }
 
   void move_origin(const T& by) { origin_ = origin_ + by; }
-  static auto state(auto& self) { return std::tie(self.origin_); }
+  static auto state(auto& self) { return fields(self.origin_); }
   void loaded() const { require_state(is_finite(origin_.high) && is_finite(origin_.low), "times"); }
 
  private:

@@ -12,8 +12,8 @@
 #include <concepts>
 #include <cstdint>
 #include <limits>
-#include <tuple>
 
+#include "cradle/core/base/fields.hpp"
 #include "cradle/core/base/real.hpp"
 
 namespace cradle {
@@ -66,7 +66,7 @@ template <Real T> class Ledger {
     else
       return sum_;
   }
-  static auto state(auto& self) { return std::tie(self.sum_, self.rest_); }
+  static auto state(auto& self) { return fields(self.sum_, self.rest_); }
 
  private:
   // Wraps around if the losses are far more than the energy, which a state from a damaged file may cause.

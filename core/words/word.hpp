@@ -15,7 +15,6 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -229,7 +228,7 @@ class Followed {
   std::uint64_t kept() const { return kept_; }  // letters before the first that is not the word's
   std::uint64_t periods() const { return kept_ / word_.size(); }
 
-  static auto state(auto& self) { return std::tie(self.open_, self.kept_); }
+  static auto state(auto& self) { return fields(self.open_, self.kept_); }
   void loaded() const {
     for (const std::uint64_t place : open_) require_state(place < next_.size(), "a place in a word");
   }

@@ -4,6 +4,7 @@
 #include <concepts>
 #include <limits>
 
+#include "cradle/core/base/fields.hpp"
 #include "cradle/tools/engines/any_engine.hpp"
 #include "cradle/tools/engines/engine_of.hpp"
 #include "cradle/tools/engines/run_state_in.hpp"
@@ -119,7 +120,7 @@ template <Real T> class AnyEngineIn final : public AnyEngine {
   std::string shape() const override {
     return run_.engine->shape() + state_shape<AnyEngineIn>() + (std::same_as<T, double> ? "" : "exact");
   }
-  static auto state(auto& self) { return std::tie(self.last_checked_, self.histograms_); }
+  static auto state(auto& self) { return fields(self.last_checked_, self.histograms_); }
 
  private:
   std::unique_ptr<Engine<T>> engine() const {

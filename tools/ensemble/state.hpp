@@ -8,9 +8,9 @@
 #include <map>
 #include <mutex>
 #include <string>
-#include <tuple>
 #include <vector>
 
+#include "cradle/core/base/fields.hpp"
 #include "cradle/core/base/large_pages.hpp"
 #include "cradle/core/ensemble/ensemble.hpp"
 #include "cradle/tools/ensemble/layout.hpp"
@@ -40,7 +40,7 @@ class ReplicaTable {
   /// The positions of the rows, sorted by replica index.
   std::vector<std::size_t> order() const;
 
-  static auto state(auto& self) { return std::tie(self.width_, self.integers_, self.numbers_); }
+  static auto state(auto& self) { return fields(self.width_, self.integers_, self.numbers_); }
   void loaded() const;
 
  private:
@@ -75,7 +75,7 @@ struct EnsembleRecord {
   std::vector<Moments> left_over = {};  // memory for more of them
 
   static auto state(auto& self) {
-    return std::tie(self.point, self.rows, self.messages, self.nodes, self.to_spread, self.spreads, self.kept);
+    return fields(self.point, self.rows, self.messages, self.nodes, self.to_spread, self.spreads, self.kept);
   }
 };
 

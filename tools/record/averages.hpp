@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "cradle/core/base/fields.hpp"
 #include "cradle/core/observe/averages.hpp"
 #include "cradle/tools/record/measurement.hpp"
 
@@ -58,7 +59,7 @@ class AverageMeasurement {
     put.add(std::move(table));
   }
 
-  static auto state(auto& self) { return std::tie(self.averages_); }
+  static auto state(auto& self) { return fields(self.averages_); }
 
  private:
   const Scene& scene_;

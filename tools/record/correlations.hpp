@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "cradle/core/base/fields.hpp"
 #include "cradle/core/observe/correlations.hpp"
 #include "cradle/tools/record/measurement.hpp"
 
@@ -53,7 +54,7 @@ class CorrelationMeasurement {
     put.add(std::move(table));
   }
 
-  static auto state(auto& self) { return std::tie(self.correlator_); }
+  static auto state(auto& self) { return fields(self.correlator_); }
 
  private:
   std::size_t checked() const {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "cradle/core/base/fields.hpp"
 #include "cradle/tools/record/measurement.hpp"
 
 namespace cradle::tools {
@@ -41,7 +42,7 @@ class EventMeasurement {
     merges_ = now.merges, below_cutoff_ = now.below_cutoff;
   }
 
-  static auto state(auto&) { return std::tie(); }
+  static auto state(auto&) { return fields(); }
 
   std::size_t rows() const { return rows_; }
   void put_rows(TableSink& put) {

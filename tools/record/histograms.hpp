@@ -4,6 +4,7 @@
 #include <array>
 #include <limits>
 
+#include "cradle/core/base/fields.hpp"
 #include "cradle/core/observe/histograms.hpp"
 #include "cradle/tools/record/measurement.hpp"
 
@@ -84,7 +85,7 @@ class HistogramMeasurement {
     }
   }
 
-  static auto state(auto& self) { return std::tie(self.gaps_, self.clusters_); }
+  static auto state(auto& self) { return fields(self.gaps_, self.clusters_); }
 
  private:
   bool wanted(std::string_view name) const { return scene_.output.has_histogram(name); }

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "cradle/core/base/fields.hpp"
 #include "cradle/tools/record/measurement.hpp"
 
 namespace cradle::tools {
@@ -32,7 +33,7 @@ class MassMeasurement {
                    {"clusters", "1", "clusters of such a mass", std::move(clusters)}}});
   }
 
-  static auto state(auto& self) { return std::tie(self.written_); }
+  static auto state(auto& self) { return fields(self.written_); }
 
  private:
   std::uint64_t written_ = 0;

@@ -5,6 +5,7 @@
 #include <optional>
 #include <tuple>
 
+#include "cradle/core/base/fields.hpp"
 #include "cradle/tools/record/averages.hpp"
 #include "cradle/tools/record/correlations.hpp"
 #include "cradle/tools/record/events.hpp"
@@ -105,7 +106,7 @@ template <class... Each> class MeasurementsOf {
   }
 
   static auto state(auto& self) {
-    return std::apply([](auto&... m) { return std::tie(m...); }, self.all_);
+    return std::apply([](auto&... m) { return fields(m...); }, self.all_);
   }
   void loaded() const {
     with_rows(all_, [&]<class M>(const std::optional<M>& measurement, std::size_t) {

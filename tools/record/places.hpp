@@ -2,6 +2,7 @@
 // times and on the average over samples.
 #pragma once
 
+#include "cradle/core/base/fields.hpp"
 #include "cradle/core/observe/batch_means.hpp"
 #include "cradle/core/observe/structure.hpp"
 #include "cradle/tools/record/measurement.hpp"
@@ -52,7 +53,7 @@ template <auto wanted, auto make, Group (*table)(const Scene&)> class PlaceMeasu
     put.add(std::move(average));
   }
 
-  static auto state(auto& self) { return std::tie(self.written_, self.means_); }
+  static auto state(auto& self) { return fields(self.written_, self.means_); }
 
  private:
   static std::vector<Group> averages(const Scene& scene) {

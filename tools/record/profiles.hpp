@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "cradle/core/base/fields.hpp"
 #include "cradle/core/observe/profile.hpp"
 #include "cradle/tools/record/measurement.hpp"
 
@@ -52,7 +53,7 @@ class ProfileMeasurement {
     put.add(std::move(table));
   }
 
-  static auto state(auto& self) { return std::tie(self.written_); }
+  static auto state(auto& self) { return fields(self.written_); }
 
  private:
   BinRange range(const RunState& now) const {

@@ -1,6 +1,7 @@
 // Which of the two scenarios of Fig. 9 a wet row follows (core/observe/scenario.hpp).
 #pragma once
 
+#include "cradle/core/base/fields.hpp"
 #include "cradle/core/observe/scenario.hpp"
 #include "cradle/tools/record/measurement.hpp"
 #include "cradle/tools/record/series.hpp"
@@ -51,7 +52,7 @@ class ScenarioMeasurement {
   }
   Summary summary() const { return found_; }
 
-  static auto state(auto& self) { return std::tie(self.watch_); }
+  static auto state(auto& self) { return fields(self.watch_); }
 
  private:
   bool clouds_;

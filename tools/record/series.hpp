@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "cradle/core/base/fields.hpp"
 #include "cradle/tools/record/measurement.hpp"
 #include "cradle/tools/scene/scene.hpp"
 
@@ -167,7 +168,7 @@ class SeriesMeasurement {
     }
   }
 
-  static auto state(auto&) { return std::tie(); }
+  static auto state(auto&) { return fields(); }
 
   std::size_t rows() const { return rows_; }
   void put_rows(TableSink& put) {

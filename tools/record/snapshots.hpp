@@ -1,6 +1,7 @@
 // All active particles at times, and where a run ends early.
 #pragma once
 
+#include "cradle/core/base/fields.hpp"
 #include "cradle/tools/record/measurement.hpp"
 
 namespace cradle::tools {
@@ -24,7 +25,7 @@ class SnapshotMeasurement {
     if (!put.for_statistics()) put.add(rows(*now.after_last_collision()));
   }
 
-  static auto state(auto& self) { return std::tie(self.written_); }
+  static auto state(auto& self) { return fields(self.written_); }
 
  private:
   Recorded rows(const RunState& now) {

@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "cradle/core/base/fields.hpp"
 #include "cradle/core/observe/collision_word.hpp"
 #include "cradle/core/words/word.hpp"
 #include "cradle/tools/record/measurement.hpp"
@@ -35,7 +36,7 @@ class WordMeasurement {
 
   void finish(const RunState&, TableSink& put) { put.add(table()); }
 
-  static auto state(auto& self) { return std::tie(self.made_, self.followed_, self.left_at_); }
+  static auto state(auto& self) { return fields(self.made_, self.followed_, self.left_at_); }
 
  private:
   Group table() const {

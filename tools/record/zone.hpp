@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "cradle/core/base/fields.hpp"
 #include "cradle/core/observe/zone.hpp"
 #include "cradle/core/theory/wet_zone.hpp"
 #include "cradle/tools/record/measurement.hpp"
@@ -74,7 +75,7 @@ class ZoneMeasurement {
   }
   Summary summary() const { return {{"zone_width", width_.width}}; }
 
-  static auto state(auto& self) { return std::tie(self.zone_); }
+  static auto state(auto& self) { return fields(self.zone_); }
 
  private:
   const Scene& scene_;

@@ -7,7 +7,6 @@
 #include <functional>
 #include <string>
 #include <string_view>
-#include <tuple>
 #include <type_traits>
 #include <unordered_map>
 #include <utility>
@@ -38,7 +37,7 @@ struct Column {
     return std::visit([](const auto& v) { return v.size(); }, values) / width + left_out;
   }
   /// For complete columns, not those of an outline.
-  static auto state(auto& self) { return std::tie(self.name, self.unit, self.description, self.values, self.width); }
+  static auto state(auto& self) { return fields(self.name, self.unit, self.description, self.values, self.width); }
   void loaded() const {
     const std::size_t numbers = std::visit([](const auto& v) { return v.size(); }, values);
     require_state(width > 0 && numbers % width == 0, "rows that are not whole");
@@ -83,7 +82,7 @@ struct Group {
   std::vector<Column> columns;
 
   const Column* find(std::string_view column) const { return find_named(columns, column); }
-  static auto state(auto& self) { return std::tie(self.name, self.attributes, self.columns); }
+  static auto state(auto& self) { return fields(self.name, self.attributes, self.columns); }
 };
 
 struct Result {

@@ -6,8 +6,8 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <tuple>
 
+#include "cradle/core/base/fields.hpp"
 #include "cradle/tools/engines/any_engine.hpp"
 #include "cradle/tools/run/report.hpp"
 #include "cradle/tools/run/sink.hpp"
@@ -58,7 +58,7 @@ class RunGuards {
     return now;
   }
 
-  static auto state(auto& self) { return std::tie(self.counted_from_); }
+  static auto state(auto& self) { return fields(self.counted_from_); }
 
  private:
   [[noreturn]] void stop(const ReportedGuard& broken) const {

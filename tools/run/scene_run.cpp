@@ -1,7 +1,7 @@
+#include "cradle/core/base/fields.hpp"
 #include "cradle/tools/run/run.hpp"
 
 #include <chrono>
-#include <tuple>
 #include <utility>
 
 #include "cradle/tools/record/measurements.hpp"
@@ -20,7 +20,7 @@ struct SavedTimes {
   bool at_collision = false;
   std::optional<std::string> inspected = {};
   static auto state(auto& self) {
-    return std::tie(self.time, self.meant, self.rounded, self.at_collision, self.inspected);
+    return fields(self.time, self.meant, self.rounded, self.at_collision, self.inspected);
   }
 };
 
@@ -123,7 +123,7 @@ class EngineRun final : public SceneRun {
     progress_.continue_from(last.value, engine_->counts().collisions);
   }
 
-  static auto state(auto& self) { return std::tie(self.measurements_, self.guards_); }
+  static auto state(auto& self) { return fields(self.measurements_, self.guards_); }
 
  private:
   // ---- how it advances

@@ -7,7 +7,6 @@
 #include <functional>
 #include <limits>
 #include <string_view>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -72,7 +71,7 @@ struct RunStatus {
 
   static constexpr double none = std::numeric_limits<double>::quiet_NaN();
   static auto state(auto& self) {
-    return std::tie(self.seconds, self.time, self.collisions, self.gap_min, self.closure_gap, self.closure_speed);
+    return fields(self.seconds, self.time, self.collisions, self.gap_min, self.closure_gap, self.closure_speed);
   }
 };
 

@@ -14,7 +14,6 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -33,7 +32,7 @@ struct SpreadRequest {
   FixedBins bins;
 
   bool bins_are_possible() const { return bins.from < bins.to && bins.bins >= 1 && bins.bins <= 1'000'000; }
-  static auto state(auto& self) { return std::tie(self.name, self.bins); }
+  static auto state(auto& self) { return fields(self.name, self.bins); }
   void loaded() const { require_state(bins_are_possible(), "no bins"); }
   bool operator==(const SpreadRequest&) const = default;
 };
@@ -56,8 +55,8 @@ struct JournalHeader {
 
   bool of_run() const { return kind == "run"; }
   static auto state(auto& self) {
-    return std::tie(self.kind, self.identity, self.scene, self.name, self.every_seconds, self.extends, self.wanted,
-                    self.spreads, self.points);
+    return fields(self.kind, self.identity, self.scene, self.name, self.every_seconds, self.extends, self.wanted,
+                  self.spreads, self.points);
   }
   void loaded() const {
     constexpr std::uint64_t most = std::uint64_t{1} << 53;
@@ -139,7 +138,7 @@ struct CheckpointHeader {
   std::uint64_t collisions = 0;
 
   static auto state(auto& self) {
-    return std::tie(self.run, self.records, self.check, self.seconds, self.time, self.collisions);
+    return fields(self.run, self.records, self.check, self.seconds, self.time, self.collisions);
   }
 };
 

@@ -8,9 +8,9 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <tuple>
 #include <vector>
 
+#include "cradle/core/base/fields.hpp"
 #include "cradle/tools/result/result.hpp"
 #include "cradle/tools/run/run.hpp"
 #include "cradle/tools/scene/scene.hpp"
@@ -128,7 +128,7 @@ struct RunAt {
   std::uint64_t collisions = 0, merges = 0;
   std::string how;  // "double", "mpfr, 50 digits" or "closed form"
 
-  static auto state(auto& self) { return std::tie(self.value, self.outcome, self.collisions, self.merges, self.how); }
+  static auto state(auto& self) { return fields(self.value, self.outcome, self.collisions, self.merges, self.how); }
 };
 
 /// What is known of the outcome at one of the last two values.

@@ -154,7 +154,9 @@ constexpr double infinity = std::numeric_limits<double>::infinity(), nan = std::
 template <class Chain> Contradicted<Made<Chain, Dry>> dry(const Scene<double>& particles) {
   return Contradicted<Made<Chain, Dry>>([=] { return Made<Chain, Dry>(Dry(0.9, 1e-4), Chain(particles, 0.)); });
 }
-template <std::size_t k, class X> auto& field(X& x) { return std::get<k>(X::state(x)); }
+template <std::size_t k, class X> auto& field(X& x) {
+  return X::state(x)([](auto&... each) -> auto& { return std::get<k>(std::tie(each...)); });
+}
 
 template <class Chain> void expect_gaps_refused(const Scene<double>& particles) {
   using Run = Made<Chain, Dry>;

@@ -1,4 +1,5 @@
 // Values are read from their bytes unchanged; the checksum is compared with Boost's, bit by bit.
+#include "cradle/core/base/fields.hpp"
 #include "cradle/tools/support/bytes.hpp"
 
 #include <boost/crc.hpp>
@@ -25,7 +26,7 @@ struct Listed {
   std::vector<double> numbers;
   std::vector<std::string> texts;
   std::variant<double, std::string, std::vector<std::uint64_t>> either;
-  static auto state(auto& self) { return std::tie(self.number, self.text, self.numbers, self.texts, self.either); }
+  static auto state(auto& self) { return fields(self.number, self.text, self.numbers, self.texts, self.either); }
   bool operator==(const Listed&) const = default;
 };
 

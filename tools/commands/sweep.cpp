@@ -14,9 +14,11 @@ struct SweepArguments : CommonOptions, OutputOptions {
 
 // The points of the command line or, without any, those of the scene.
 StudyPlan plan(const SweepArguments& options) {
-  const Scene scene = read_scene(options.scene, options.all_overrides());
+  const bool of_scene = options.sweep.vary.empty() && options.sweep.points.empty();
+  const Scene scene = read_scene(options.scene, options.all_overrides(),
+                                 of_scene ? SweepPoint() : sweep_points(options.sweep).front());
   Sweep sweep = scene.sweep;
-  if (!options.sweep.vary.empty() || !options.sweep.points.empty()) {
+  if (!of_scene) {
     sweep.vary = options.sweep.vary;
     sweep.points = options.sweep.points;
     sweep.cuts = options.sweep.cuts;

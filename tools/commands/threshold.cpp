@@ -17,7 +17,9 @@ struct ThresholdArguments : CommonOptions, OutputOptions {
 Exit run_threshold(const ThresholdArguments& options) {
   const ThresholdProblem question(options.scene, options.all_overrides(), options.vary, options.outcome,
                                   static_cast<unsigned>(options.digits));
-  const std::string output = options.output_or(options.read().name + "-threshold.h5");
+  const Scene& scene = question.at_low();
+  if (!options.quiet) notify(scene.remarks);
+  const std::string output = options.output_or(scene.name + "-threshold.h5");
   const FileClaim claim(output);
   Interrupt interrupt;
   note_signals(interrupt);

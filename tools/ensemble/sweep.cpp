@@ -193,9 +193,9 @@ Group sweep_summary(const Sweep& sweep, const EnsembleStates& states) {
 }
 
 Study sweep_of(const std::string& scene, const std::vector<std::string>& overrides, const Sweep& sweep) {
-  Scene varied = read_scene(scene, overrides);
-  varied.sweep = sweep;
   const auto points = sweep_points(sweep);
+  Scene varied = read_scene(scene, overrides, points.front());
+  varied.sweep = sweep;
   for (const std::string& given : overrides) {
     const auto key = key_of(given);
     const auto sets = [&](const SweepPoint& point) { return std::ranges::find(point, key, key_of) != point.end(); };

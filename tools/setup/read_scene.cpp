@@ -188,6 +188,18 @@ Scene parse_scene(std::string_view text, const std::string& source_name, const s
   return scene;
 }
 
+Scene read_scene(const std::string& path_or_name, const std::vector<std::string>& overrides,
+                 const std::vector<std::string>& first_values) {
+  try {
+    return read_scene(path_or_name, overrides);
+  } catch (const Error&) {
+    if (first_values.empty()) throw;
+    std::vector<std::string> all = overrides;
+    all.insert(all.end(), first_values.begin(), first_values.end());
+    return read_scene(path_or_name, all);
+  }
+}
+
 Scene read_scene(const std::string& path_or_name, const std::vector<std::string>& overrides) {
   std::error_code unreadable;
   const bool exists = std::filesystem::exists(path_or_name, unreadable);

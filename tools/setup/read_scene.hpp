@@ -17,6 +17,10 @@ namespace cradle::tools {
 /// Throws Error: Exit::io if nothing can be read, Exit::bad_input for wrong contents.
 Scene read_scene(const std::string& path_or_name, const std::vector<std::string>& overrides = {});
 
+/// The same for commands that vary keys: if the scene lacks one of these, it is read with the first values of all.
+Scene read_scene(const std::string& path_or_name, const std::vector<std::string>& overrides,
+                 const std::vector<std::string>& first_values);
+
 /// The same from text. Messages name `source_name`; its stem is the scene's name, and its folder is searched for a list
 /// of particles.
 Scene parse_scene(std::string_view text, const std::string& source_name,

@@ -50,6 +50,8 @@ class ThresholdProblem {
   const std::string& key() const { return key_; }  // with its index
   const Decimal& low() const { return low_; }
   const Decimal& high() const { return high_; }
+  /// The scene at the lowest value.
+  const Scene& at_low() const { return at_low_; }
   bool whole_numbers() const { return whole_; }
   unsigned digits() const { return digits_; }
   const CompareRow& what() const { return compared.at(static_cast<std::size_t>(compare_)); }

@@ -41,7 +41,8 @@ ThresholdProblem::ThresholdProblem(std::string scene, std::vector<std::string> o
   if (key_.empty() || !low || !high) throw wrong("not a key and two numbers", vary, "give KEY=LOW:HIGH");
   low_ = Decimal(*low), high_ = Decimal(*high);
   if (low_ >= high_) throw wrong("no range", vary, "give the lower number first");
-  choose_key(read_scene(scene_, overrides_));
+  const bool of_list = key_.ends_with(']');
+  choose_key(read_scene(scene_, overrides_, of_list ? std::vector<std::string>() : std::vector{assignment(low_)}));
   for (const std::string& given : overrides_)
     if (key_of(given) == key_)
       throw Error({"--set", 0, key_}, "this is the key that is varied", given, "leave out one of the two");

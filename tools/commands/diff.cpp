@@ -6,7 +6,7 @@
 
 #include "cradle/tools/commands/commands.hpp"
 #include "cradle/tools/ensemble/study.hpp"
-#include "cradle/tools/result/difference.hpp"
+#include "cradle/tools/commands/difference.hpp"
 #include "cradle/tools/result/files.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
 

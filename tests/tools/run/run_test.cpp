@@ -7,7 +7,7 @@
 // tests/tools/run/outputs.txt.)
 #include "cradle/tests/core/fixtures.hpp"
 #include "cradle/tests/tools/cases.hpp"
-#include "cradle/tools/result/difference.hpp"
+#include "cradle/tools/commands/difference.hpp"
 #include "cradle/tools/run/run_guards.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
 

@@ -1,4 +1,4 @@
-#include "cradle/tools/result/difference.hpp"
+#include "cradle/tools/commands/difference.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,10 @@
 #include <cmath>
 #include <limits>
 #include <string_view>
+#include <tuple>
 #include <type_traits>
+
+#include "cradle/tools/scene/decimal.hpp"
 
 namespace cradle::tools {
 
@@ -31,10 +34,22 @@ double relative(std::uint64_t a, std::uint64_t b) {
   return static_cast<double>(std::max(a, b) - std::min(a, b)) / static_cast<double>(std::max(a, b));
 }
 
-// Decimals with many digits are either equal or different.
-double relative(const std::string&, const std::string&) { return std::numeric_limits<double>::infinity(); }
+// Of decimals of any length and power; infinite for other texts.
+double relative(const std::string& a, const std::string& b) {
+  const auto x = plain_decimal(a), y = plain_decimal(b);
+  if (!x || !y) return std::numeric_limits<double>::infinity();
+  const DecimalParts of_x = parts_of(*x), of_y = parts_of(*y), apart = parts_of(difference(*x, *y));
+  if (apart.digits.empty()) return 0;
+  const auto size = [](const DecimalParts& of) { return std::tuple(!of.digits.empty(), of.exponent(), of.digits); };
+  const DecimalParts& larger = size(of_x) < size(of_y) ? of_y : of_x;
+  const auto leading = [](const DecimalParts& of) { return std::stod("0." + of.digits.substr(0, 20)); };
+  return leading(apart) / leading(larger) * std::pow(10., static_cast<double>(apart.exponent() - larger.exponent()));
+}
 
-std::string size_of(const std::string&, const std::string&) { return ""; }
+std::string size_of(const std::string& a, const std::string& b) {
+  const double size = relative(a, b);
+  return std::isfinite(size) ? fmt::format(" ({:.2g} relative)", size) : "";
+}
 std::string size_of(double a, double b) {
   if (std::isnan(a) || std::isnan(b)) return "";
   const std::uint64_t ulps = ulps_between(a, b);

@@ -2,7 +2,7 @@
 // where it is, with its size; and a tolerance accepts smaller differences and counts them. (What the command prints,
 // and its statuses, are in tests/tools/run/outputs.txt.)
 #include "cradle/tests/tools/program.hpp"
-#include "cradle/tools/result/difference.hpp"
+#include "cradle/tools/commands/difference.hpp"
 
 namespace cradle::tests::difference_test {
 
@@ -37,6 +37,26 @@ TEST(Difference, OfAResultAndItselfIsNone) {
   EXPECT_TRUE(none.found.empty());
   EXPECT_EQ(none.numbers, 3U + 3 + 4 + 3) << "three columns, three attributes";
   EXPECT_EQ(none.tolerated, 0U);
+}
+
+TEST(Difference, OfDecimalsHasTheirSizeBeyondDouble) {
+  const auto of = [](std::vector<std::string> decimals) {
+    Result r;
+    r.groups.push_back({"exact/series", {}, {Column{"time", "", "", std::move(decimals)}}});
+    return r;
+  };
+  const auto differences_of = [&](const std::string& a, const std::string& b, double rtol = 0) {
+    return lines(of({"1", a}), of({"1", b}), rtol);
+  };
+  const auto found = [](const std::string& what) { return std::vector{"exact/series/time: first in row 1: " + what}; };
+  EXPECT_EQ(differences_of("0.99999999999999999999", "1"), found("0.99999999999999999999 against 1 (1e-20 relative)"));
+  EXPECT_EQ(differences_of("-3e-4001", "-2.5e-4000"), found("-3e-4001 against -2.5e-4000 (0.88 relative)"));
+  EXPECT_EQ(differences_of("1e900", "-1e900"), found("1e900 against -1e900 (2 relative)"));
+  EXPECT_EQ(differences_of("0", "1e-900"), found("0 against 1e-900 (1 relative)"));
+  EXPECT_EQ(differences_of("1", "collapsed"), found("1 against collapsed"));
+  EXPECT_TRUE(differences_of("0.99999999999999999999", "1", 1e-19).empty());
+  EXPECT_FALSE(differences_of("0.99999999999999999999", "1", 1e-21).empty());
+  EXPECT_TRUE(differences_of("1.00", "1", 1e-300).empty());
 }
 
 TEST(Difference, OfEachKindIsReportedWithItsPlace) {

@@ -69,19 +69,20 @@ template <Real T> class ClusterPlaces : public HeldLine<T, ClusterLine<T>> {
     return momentum * momentum / (total + total) + moving.energy;
   }
 
-  // The left particle of a gap for which rounding may decide whether it closes up to a local time, which must not be
-  // before the last collision, or which has just changed by a merge. Deviations are not watched: those of this flight
+  // A particle at a gap for which rounding may decide whether it closes up to a local time, which must not be before
+  // the last collision, or which has just changed by a collision (right of the last particle of a line is none, but the
+  // time of its last collision). Deviations are not watched: those of this flight
   // are counted, by its speeds, and the rounding of the first and of this time.
   std::optional<ParticleIndex> uncertain_at(const T& time) const {
     const T roundings = T(64) * T(std::numeric_limits<T>::epsilon());  // as in Deviation
     const T off_by = roundings * (magnitude(clock().start()) + magnitude(clock().time(time)));
-    for (Slot s = first(); on_ring() || s != last(); s = right(s)) {
+    for (Slot s = first();; s = right(s)) {
       const Cell<T>&l = line_.gaps[s], &r = line_.gaps[right(s)];
-      const T flown = magnitude(line_.gaps.flown(s, time)), speed = closing(s);
+      const T flown = magnitude(line_.gaps.flown(s, time)), speed = on_ring() || s != last() ? closing(s) : T(0);
       const T fastest = std::max(magnitude(l.velocity), magnitude(r.velocity));
       const bool met_now = !(off_by < flown) && off_by < clock().elapsed(time);
-      const bool near = gap_at(s, time) < magnitude(speed) * off_by + fastest * flown * roundings;
-      if (speed != T(0) && (met_now || near)) return l.particle;
+      const auto near = [&] { return gap_at(s, time) < magnitude(speed) * off_by + fastest * flown * roundings; };
+      if (met_now || (speed != T(0) && near())) return l.particle;
       if (s == last()) break;
     }
     return {};

@@ -59,7 +59,7 @@ template <Real T, class MassesOf> class GapLine {
     masses.copy(other.masses, from, to, count + 1);
   }
   // Makes a gap that no collision beside it can close.
-  void block(Slot s) { gaps.put(s, cell(T(1), T(0), T(-std::int64_t{1} << 62))); }
+  void block(Slot s) { gaps.put(s, cell(very_large(), T(0), T(-std::int64_t{1} << 62))); }
 
   ParticleIndex particle(Slot s) const { return static_cast<ParticleIndex>(s) + particle_of_slot_0; }
   const T& closing(Slot s) const { return gaps[s].closing; }
@@ -127,8 +127,10 @@ template <Real T, class MassesOf> class GapLine {
     return Notice::none;
   }
 
-  // There is no gap beyond the last particle: its slot holds a gap that always opens, whatever the collisions give it.
-  void seal(Slot s, const T& time, const T& handed) { gaps.put(s, cell(T(1), time, T(-(handed + handed) - T(1)))); }
+  // There is no gap beyond the last particle: its slot holds one that always opens, whatever the collisions give it.
+  void seal(Slot s, const T& time, const T& handed) {
+    gaps.put(s, cell(very_large(), time, T(-(handed + handed) - T(1))));
+  }
 
   // The gains of the neighbours in a collision at the gap s. With exact sums the three closing speeds keep their sum:
   // the rest of the rounding is added to the larger gain, which is on the side of the lighter particle.
@@ -160,6 +162,8 @@ template <Real T, class MassesOf> class GapLine {
     made.closing = closing;
     return made;
   }
+  // Of gaps that are none: no speed closes it during a run, and no error of another gap is as large.
+  static T very_large() { return T(far_away<T>() / T(std::int64_t{1} << 60)); }
   static const T& high(const T& gain) { return gain; }
   static const T& high(const Pair<T>& gain) { return gain.high; }
   void add(Slot s, const Pair<T>& gain) {

@@ -4,10 +4,12 @@
 // without batch b; for batches of equal weight it is the error from batch means (Flyvbjerg and Petersen, J. Chem. Phys.
 // 91, 461, 1989). It holds if batches are longer than what is correlated: then four joined to one give the same.
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <numeric>
 #include <vector>
 
 #include "cradle/core/base/state.hpp"
@@ -73,13 +75,17 @@ class SampledMeans {
   // `samples` will be added, of so many numbers each.
   SampledMeans(std::size_t numbers, std::size_t samples) : samples_(samples), sums_(numbers * mean_batches) {}
 
+  // A sample that has none of the numbers, which are NaN, is left out.
   void add(const std::vector<double>& sample) {
-    const std::size_t batch = taken_ * mean_batches / samples_;
+    const std::size_t batch = taken_++ * mean_batches / samples_;
+    if (std::ranges::any_of(sample, [](double number) { return std::isnan(number); })) return;
     for (std::size_t k = 0; k < sample.size(); ++k) sums_[k * mean_batches + batch] += sample[k];
     weights_.at(batch) += 1;
-    ++taken_;
   }
-  std::size_t samples() const { return taken_; }
+  bool empty() const { return taken_ == 0; }
+  std::size_t samples() const {
+    return static_cast<std::size_t>(std::accumulate(weights_.begin(), weights_.end(), 0.));
+  }
   bool complete() const { return taken_ == samples_; }
   std::vector<BatchMean> means() const {
     std::vector<BatchMean> all;

@@ -44,7 +44,7 @@ template <auto wanted, auto make, Group (*table)(const Scene&)> class PlaceMeasu
     put.add(std::move(at_time));
   }
   void finish(const RunState&, TableSink& put) {
-    if (means_.samples() == 0 || !(put.for_file() || means_.complete())) return;
+    if (means_.empty() || !(put.for_file() || means_.complete())) return;
     Group average = std::move(averages(scene_).front());
     const std::vector<BatchMean> all = means_.means();
     average.columns[1].values = numbers_of(all, &BatchMean::mean);

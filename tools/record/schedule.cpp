@@ -1,8 +1,28 @@
 #include "cradle/tools/record/schedule.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
+#include "cradle/tools/support/errors.hpp"
+
 namespace cradle::tools {
+
+namespace {
+
+// The series may leave out times that are one in the type; what is computed from samples at equal distances may not.
+Times samples_of(const MeasurementRow& row, const Scene& scene, Rounding round) {
+  if (!row.samples) return {};
+  const DecimalColumn decimals = row.samples(scene);
+  Times times(decimals, round);
+  if (times.size() < decimals.size() && row.of_many_collisions)
+    throw Error(scene.place(fmt::format("output.{}", row.name)), "samples at times that are one in this precision",
+                fmt::format("{} times of {}", times.size(), decimals.size()),
+                "use more digits (run.precision), or an earlier run.start");
+  return times;
+}
+
+}  // namespace
 
 void Times::push_back(std::string_view decimal, Rounding round) {
   Number time = round(decimal);
@@ -29,8 +49,7 @@ std::vector<double> Times::rounded() const {
 Schedule::Schedule(const Scene& scene) {
   const Rounding round = rounding(scene);
   for (const MeasurementRow* row : measurement_rows())
-    of.push_back({row->samples ? Times(row->samples(scene), round) : Times(),
-                  row->times ? Times(row->times(scene.output), round) : Times()});
+    of.push_back({samples_of(*row, scene, round), row->times ? Times(row->times(scene.output), round) : Times()});
   end_.push_back(scene.run.until.text, round);
   for (const MeasurementTimes& each : of)
     for (const Times* times : {&each.samples, &each.tables})

@@ -139,8 +139,8 @@ std::string account_warning(const Account<Number>& account, bool uncertain_end, 
         account.first_unresolved.gap.value);
   if (account.simultaneous > 0)
     text += fmt::format(
-        "in {} collisions three particles met at one time, within rounding: then the numbers do not say which pair "
-        "collides first, and the left one is taken; {} (particles that rest on one another always meet so)\n",
+        "{} times three particles met at one time, within rounding: then the numbers do not say which pair collides "
+        "first, and the left one is taken; {} (particles that rest on one another always meet so)\n",
         account.simultaneous, apart(scene));
   if (const double grown = account.first_uncertain.gap.value; account.uncertain > 0)
     text += fmt::format(
@@ -155,7 +155,9 @@ std::string account_warning(const Account<Number>& account, bool uncertain_end, 
   if (uncertain_end)
     text += fmt::format("rounding may decide which collisions come before the end (t = {}, {}): use more "
                         "digits (run.precision), or another run.until\n",
-                        account.first_uncertain.time.text(), place(account.first_uncertain.particle));
+                        account.first_uncertain.time.text(),
+                        particles_merge(scene) ? fmt::format("particle {}", account.first_uncertain.particle)
+                                               : place(account.first_uncertain.particle));
   return text;
 }
 

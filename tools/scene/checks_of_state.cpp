@@ -172,9 +172,6 @@ void walls_stand(const Checked& of) {
   if (of.scene.run.collapse == scene::CollapsePolicy::merge)
     of.refuse(first, "a wall for particles that merge", "run.collapse = \"merge\"",
               "remove [walls], or choose another collapse policy");
-  if (of.scene.output.core)
-    of.refuse("output.core", "nothing to compare the core with", "walls, which the sticky gas does not have",
-              "remove it");
   const auto among = [&](const char* key, const Decimal& wall, const std::string& particle) {
     of.refuse(key, "a wall among the particles, which would have met before the start",
               fmt::format("wall at {}, {}", wall.text, particle), "move it outwards");
@@ -211,6 +208,16 @@ void walls_stand(const Checked& of) {
             "give smaller speeds, or an earlier run.until");
 }
 
+void core_on_a_line(const Checked& of) {
+  if (!of.scene.output.core) return;
+  const std::pair<bool, const char*> others[] = {
+      {of.scene.walls.any(), "walls"}, {of.scene.gravity.acts(), "gravity"}, {of.scene.initial.on_ring(), "a ring"}};
+  for (const auto& [there, found] : others)
+    if (there)
+      of.refuse("output.core", "nothing to compare the core with",
+                fmt::format("{}, which the sticky gas does not have", found), "remove it");
+}
+
 void particles_can_fall(const Checked& of) {
   if (!of.scene.gravity.acts()) return;
   const Initial& initial = of.scene.initial;
@@ -224,9 +231,6 @@ void particles_can_fall(const Checked& of) {
   if (of.scene.run.collapse == scene::CollapsePolicy::merge)
     of.refuse("gravity.acceleration", "gravity on particles that merge", "run.collapse = \"merge\"",
               "choose another collapse policy; below the rest_speed of a floor particles stay on it");
-  if (of.scene.output.core)
-    of.refuse("output.core", "nothing to compare the core with", "gravity, which the sticky gas does not have",
-              "remove it");
   const bool to_left = *of.scene.gravity.acceleration < Decimal("0");
   const WallAt& floor = to_left ? of.scene.walls.left : of.scene.walls.right;
   if (floor.position && !floor.temperature && floor.restitution == Decimal("0") && !floor.rest_speed)
@@ -291,7 +295,7 @@ std::string without_zone(const Scene& scene) try {
 
 void check_state(const Checked& of) {
   for (const auto check : {rows_meet, one_list_of_particles, two_clusters, gas_between_walls, walls_stand,
-                           particles_can_fall, random_masses, masses_repeat})
+                           core_on_a_line, particles_can_fall, random_masses, masses_repeat})
     check(of);
 }
 

@@ -152,12 +152,11 @@ std::string account_warning(const Account<Number>& account, bool uncertain_end, 
         precision_name(run),
         measures_averages(scene) ? "Averages over many collisions are as good from it; to follow one motion use"
                                  : "Use");
+  const auto& [time, particle, error] = account.first_uncertain;
   if (uncertain_end)
-    text += fmt::format("rounding may decide which collisions come before the end (t = {}, {}): use more "
-                        "digits (run.precision), or another run.until\n",
-                        account.first_uncertain.time.text(),
-                        particles_merge(scene) ? fmt::format("particle {}", account.first_uncertain.particle)
-                                               : place(account.first_uncertain.particle));
+    text += fmt::format("rounding may decide which collisions come before the end (t = {}, {}): use more digits "
+                        "(run.precision), or another run.until\n",
+                        time.text(), particles_merge(scene) ? fmt::format("particle {}", particle) : place(particle));
   return text;
 }
 

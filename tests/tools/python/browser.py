@@ -18,9 +18,9 @@ def find():
 
 
 class Browser:
-    """Use it in `with`."""
+    """Use it in `with`. hidden: no frame is drawn, which takes half the time; the mouse and printing need frames."""
 
-    def __init__(self):
+    def __init__(self, hidden=False):
         self.folder = tempfile.mkdtemp()
         ours_read, theirs_write = os.pipe()
         theirs_read, ours_write = os.pipe()
@@ -28,6 +28,7 @@ class Browser:
         self.process = subprocess.Popen(
             ["bash", "-c", f'exec "$0" "$@" 3<&{theirs_read} 4>&{theirs_write}', find(), "--headless", "--no-sandbox",
              "--disable-gpu", "--hide-scrollbars", "--disable-dev-shm-usage", "--disable-background-networking",
+             "--disable-back-forward-cache", "--renderer-process-limit=1",  # else each page has a process of its own
              "--no-first-run", "--remote-debugging-pipe", f"--user-data-dir={self.folder}", "about:blank"],
             pass_fds=(theirs_read, theirs_write), stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL)
@@ -35,7 +36,7 @@ class Browser:
         self.reading, self.writing = os.fdopen(ours_read, "rb"), os.fdopen(ours_write, "wb")
         self.number, self.left, self.session = 0, b"", None
         self.complaints, self.requests, self.seen = [], [], []
-        target = self.call("Target.createTarget", url="about:blank")["targetId"]
+        target = self.call("Target.createTarget", url="about:blank", hidden=hidden)["targetId"]
         self.session = self.call("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
         for domain in ("Page", "Runtime", "Network", "Log"):
             self.call(f"{domain}.enable")
@@ -93,8 +94,10 @@ class Browser:
         """What it has asked any network for."""
         return [url for url in self.requests if not url.startswith(("file:", "about:", "blob:", "data:"))]
 
-    def emulate(self, scheme="light", media=""):
-        """scheme: light or dark; media: "print" or as on a screen."""
+    def emulate(self, scheme="light", media="", afresh=True):
+        """scheme: light or dark; media: "print" or as on a screen; afresh: forgets what was logged and asked for."""
+        if afresh:
+            self.complaints.clear(), self.requests.clear()
         self.call("Emulation.setEmulatedMedia", media=media,
                   features=[{"name": "prefers-color-scheme", "value": scheme}])
 

@@ -167,8 +167,9 @@ class InProgress(small.Case):
 
     def test_of_a_run_what_is_recorded_so_far(self):
         keys = small.ENDLESS | {"initial.particles": 200_000, "run.until": "1e7", "output.series.every": 1}
-        running = self.start("run", "cooling", "-o", "way.h5", "--quiet", *small.set_words(keys))
+        running = self.start("run", "cooling", "-o", "way.h5", "--quiet", "--threads", "1", *small.set_words(keys))
         while running.poll() is None:
+            time.sleep(0.05)
             try:
                 with cradle.open("way.h5.part") as result:
                     if len(result.series.get("time", ())) < 2:

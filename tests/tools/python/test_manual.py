@@ -23,8 +23,7 @@ import matplotlib.pyplot as plt
 
 import small
 
-HERE = os.path.dirname(os.path.abspath(__file__))
-ROOT = os.path.join(HERE, "..", "..", "..")
+ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "..")
 MOST_NOT_RUN = 12  # of some hundred blocks
 
 BLOCK = re.compile(r"(?:^<!-- (?P<mark>not run|status): (?P<said>.+?) -->\n)?"

@@ -163,8 +163,9 @@ class Pictures(small.Case):
                 own = given | times | {"run.start": start, "run.until": until, "output.series.spacing": "linear"}
                 with make(scene, set=own, output="late.h5", force=True) as result:
                     shift = start / style.Units.of(result).t
-                    drawn.append({(name, panel, k): line.get_xydata().T for name in cradle.plot.names(result)
-                                  for panel, ax in enumerate(cradle.plot(result, name).axes)
+                    drawn.append({(name, panel, k): line.get_xydata().T
+                                  for name, draw in cradle.plot.drawings(result).items()
+                                  for panel, ax in enumerate(draw().axes)
                                   for k, line in enumerate(ax.get_lines())})
                 plt.close("all")
             self.assertEqual(drawn[0].keys(), drawn[1].keys())

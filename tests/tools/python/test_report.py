@@ -252,8 +252,6 @@ class Reader(unittest.TestCase):
 
     def load(self, make, scheme="light", media=""):
         small.page(make)
-        self.browser.complaints.clear()
-        self.browser.requests.clear()
         self.browser.emulate(scheme, media)
         self.browser.load(f"{make.__name__}.html")
 

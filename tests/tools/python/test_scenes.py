@@ -26,7 +26,6 @@ def made(line):
         return f"{line}: status {run.returncode}\n{run.stderr}"
     try:
         cradle.report(f"{name}.h5")
-        return ""
     except Exception:
         return f"{line}\n{traceback.format_exc()}"
 

@@ -83,10 +83,14 @@ class Site(unittest.TestCase):
         cls.reason = built(cls.folder)
         cls.pages = {str(path.relative_to(cls.folder)): small.Page(small.read(path))
                      for path in cls.folder.rglob("*.html") if path.name != "404.html"}
+        cls.reader = cls.enterClassContext(browser.Browser(hidden=True)) if browser.find() else None
 
     def setUp(self):
         if self.reason:
             self.skipTest(self.reason)
+        if self.reader:
+            self.reader.emulate()
+            self.reader.resize()
 
     def test_has_the_pages(self):
         self.assertGreater(len(self.pages), 30)
@@ -119,37 +123,36 @@ class Site(unittest.TestCase):
 
     @unittest.skipUnless(browser.find(), "no Chromium (Debian: chromium)")
     def test_reader_finds_words_from_a_disk(self):
-        with browser.Browser() as reader:
-            for width, scheme, colours in ((1200, "light", "default"), (390, "dark", "slate")):
-                reader.resize(width)
-                reader.emulate(scheme)
-                reader.load(os.path.join(self.folder, "index.html"))
-                reader.until(f"document.body.dataset.mdColorScheme === '{colours}'")
-                for word, page in (("gap", "precision"), ("resume", "how-to-run"), ("collapse", "how-to-trust"),
-                                   ("digits", "how-to-trust")):
-                    reader.load(self.folder / "index.html")
-                    reader.evaluate(TYPE % word)
-                    self.assertIn(page, reader.until(FOUND + "[0]", 60), word)
-            self.assertEqual(reader.complaints, [])
-            self.assertEqual(reader.outside(), [])
+        for width, scheme, colours in ((1200, "light", "default"), (390, "dark", "slate")):
+            self.reader.resize(width)
+            self.reader.emulate(scheme, afresh=False)
+            self.reader.load(os.path.join(self.folder, "index.html"))
+            self.reader.until(f"document.body.dataset.mdColorScheme === '{colours}'")
+            for word, page in (("gap", "precision"), ("resume", "how-to-run"), ("collapse", "how-to-trust"),
+                               ("digits", "how-to-trust")):
+                self.reader.load(self.folder / "index.html")
+                self.reader.evaluate(TYPE % word)
+                self.assertIn(page, self.reader.until(FOUND + "[0]", 60), word)
+        self.assertEqual(self.reader.complaints, [])
+        self.assertEqual(self.reader.outside(), [])
 
     @unittest.skipUnless(browser.find(), "no Chromium (Debian: chromium)")
     def test_a_reader_who_types_before_the_page_is_whole_finds_it(self):
-        with (http.server.ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(SlowServer, directory=self.folder))
-              as server, browser.Browser() as reader):
+        with http.server.ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(SlowServer, directory=self.folder)
+                                             ) as server:
             threading.Thread(target=server.serve_forever).start()
             self.addCleanup(server.shutdown)
-            reader.call("Page.addScriptToEvaluateOnNewDocument", source=TYPE_AT_ONCE % "collapse")
-            reader.load(f"http://127.0.0.1:{server.server_port}/index.html")
-            self.assertIn("how-to-trust", reader.until(FOUND + "[0]", 60))
+            script = self.reader.call("Page.addScriptToEvaluateOnNewDocument", source=TYPE_AT_ONCE % "collapse")
+            self.addCleanup(self.reader.call, "Page.removeScriptToEvaluateOnNewDocument", **script)
+            self.reader.load(f"http://127.0.0.1:{server.server_port}/index.html")
+            self.assertIn("how-to-trust", self.reader.until(FOUND + "[0]", 60))
 
     @unittest.skipUnless(browser.find(), "no Chromium (Debian: chromium)")
     def test_no_page_is_wider_than_the_window_or_a_telephone(self):
-        with browser.Browser() as reader:
-            for name in self.pages:
-                reader.load(self.folder / name)
-                for width in (1200, 390):
-                    reader.resize(width)
-                    with self.subTest(page=name, width=width):
-                        self.assertLessEqual(reader.evaluate(WIDTH), width)
-            self.assertEqual(reader.complaints, [])
+        for name in self.pages:
+            self.reader.load(self.folder / name)
+            for width in (1200, 390):
+                self.reader.resize(width)
+                with self.subTest(page=name, width=width):
+                    self.assertLessEqual(self.reader.evaluate(WIDTH), width)
+        self.assertEqual(self.reader.complaints, [])

@@ -4,6 +4,7 @@ distributions, of a sweep those of all points. Beside them what is exact: the he
 particles between thermal walls, which pass each other, J = n (T1 - T2) / (sqrt(pi m/2) (T1^-1/2 + T2^-1/2));
 their closing speeds in equilibrium on a ring, w/(2 T) exp(-w^2/(4 T)); 1 for places that are independent.
 """
+import functools
 import math
 
 import numpy as np
@@ -137,6 +138,7 @@ def draw_places_of_points(result, group, name, along, xlabel, ylabel, scales, pa
     axes[0].legend(fontsize=7)
 
 
+@functools.cache  # of a second, for light and dark
 def displacement(t, particles):
     """The exact mean-square displacement at one time t > 0 of identical elastic particles at independent places on a
     ring at rest, for rho = T = m = 1 (for infinitely many Jepsen, J. Math. Phys. 6, 405, 1965).

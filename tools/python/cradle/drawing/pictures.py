@@ -7,6 +7,8 @@ import re
 import textwrap
 
 import matplotlib.pyplot as plt
+from matplotlib.axis import Axis
+from matplotlib.backend_bases import get_registered_canvas_class
 from matplotlib.font_manager import findfont, get_font
 from matplotlib.text import Text
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
@@ -69,7 +71,9 @@ def finish(figure, title):
         lines.append(own.get_text())
     if lines:
         figure.suptitle("\n".join(lines), fontsize=9)
-    if any(CITED.search(text.get_text()) for text in figure.findobj(Text)):
+    parts = [*figure.texts, *(part for axes in figure.axes for part in (
+        *axes.get_children(), axes.xaxis.label, axes.yaxis.label) if not isinstance(part, Axis))]  # without ticks
+    if any(CITED.search(text.get_text()) for part in parts for text in part.findobj(Text)):
         figure.supxlabel(PAPER, fontsize=6.5, x=0.99, ha="right", color="0.5")
     return figure
 
@@ -117,4 +121,6 @@ def write(figure, file, extension, dark=False, made_by=None):
     stamps = {"png": {"Software": None, "Source": made_by}, "svg": {"Date": None, "Source": made_by},
               "pdf": {"CreationDate": None, "ModDate": None, "Subject": made_by}}
     with style(dark):
-        figure.savefig(file, format=extension, metadata=stamps[extension])
+        figure.dpi = plt.rcParams["savefig.dpi"]
+        # figure.savefig would draw twice, the first time for the layout alone.
+        getattr(get_registered_canvas_class(extension)(figure), f"print_{extension}")(file, metadata=stamps[extension])

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import matplotlib
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib import textpath
 
 from ..errors import BAD_INPUT, Error
 
@@ -44,10 +45,12 @@ def style(dark=False):
         matplotlib.rcdefaults()
         matplotlib.rcParams.update(SETTINGS)
         name_colours(DARK if dark else LIGHT)
+        made, textpath.TextToPath = textpath.TextToPath, lambda: textpath.text_to_path  # parses each formula once
         try:
             yield
         finally:
             name_colours(LIGHT)
+            textpath.TextToPath = made
 
 
 @dataclass

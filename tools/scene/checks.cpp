@@ -88,6 +88,16 @@ void particles_stay_apart(const Checked& of) {
               "remove it");
 }
 
+void core_on_a_line(const Checked& of) {
+  const char* found = of.scene.walls.any()         ? "walls"
+                      : of.scene.gravity.acts()    ? "gravity"
+                      : of.scene.initial.on_ring() ? "a ring"
+                                                   : nullptr;
+  if (of.scene.output.core && found)
+    of.refuse("output.core", "nothing to compare the core with",
+              fmt::format("{}, which the sticky gas does not have", found), "remove it");
+}
+
 // A ring whose length is in another result is known later.
 void places_are_on_a_length(const Checked& of) {
   const auto ends = extent(of.scene);
@@ -176,9 +186,9 @@ void samples_can_be_kept(const Checked& of) {
 void check_scene(const Scene& scene, const Entries& entries, const std::string& scene_file) {
   const Checked of{scene, entries, scene_file};
   check_state(of);
-  for (const auto check :
-       {policy_of_law, series_has_times, ranges_of_bins, averages_have_bins_and_samples, particles_stay_apart,
-        places_are_on_a_length, numbers_fit, loss_is_above_rounding, zone_has_a_width, samples_can_be_kept})
+  for (const auto check : {policy_of_law, series_has_times, ranges_of_bins, averages_have_bins_and_samples,
+                           particles_stay_apart, core_on_a_line, places_are_on_a_length, numbers_fit,
+                           loss_is_above_rounding, zone_has_a_width, samples_can_be_kept})
     check(of);
 }
 

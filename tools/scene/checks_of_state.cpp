@@ -208,16 +208,6 @@ void walls_stand(const Checked& of) {
             "give smaller speeds, or an earlier run.until");
 }
 
-void core_on_a_line(const Checked& of) {
-  if (!of.scene.output.core) return;
-  const std::pair<bool, const char*> others[] = {
-      {of.scene.walls.any(), "walls"}, {of.scene.gravity.acts(), "gravity"}, {of.scene.initial.on_ring(), "a ring"}};
-  for (const auto& [there, found] : others)
-    if (there)
-      of.refuse("output.core", "nothing to compare the core with",
-                fmt::format("{}, which the sticky gas does not have", found), "remove it");
-}
-
 void particles_can_fall(const Checked& of) {
   if (!of.scene.gravity.acts()) return;
   const Initial& initial = of.scene.initial;
@@ -295,7 +285,7 @@ std::string without_zone(const Scene& scene) try {
 
 void check_state(const Checked& of) {
   for (const auto check : {rows_meet, one_list_of_particles, two_clusters, gas_between_walls, walls_stand,
-                           core_on_a_line, particles_can_fall, random_masses, masses_repeat})
+                           particles_can_fall, random_masses, masses_repeat})
     check(of);
 }
 

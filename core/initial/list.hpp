@@ -96,7 +96,10 @@ template <Real T> class List final : public Particles<T> {
               touch ? "): give them the velocities that they have after this collision, or a gap, 1e-300 for instance"
                     : "): sort them by position, give their gaps, or use more digits");
     }
-    require(!this->on_ring() || (given.empty() ? x_.back() - x_.front() < circumference_ : is_positive(given.back())),
+    const auto apart = [&](const T& gap) {
+      return is_positive(gap) || (gap == T(0) && !is_positive(closing_speed(count() - 1)));
+    };
+    require(!this->on_ring() || (given.empty() ? x_.back() - x_.front() < circumference_ : apart(given.back())),
             "the particles do not fit on the ring (from ", x_.front(), " to ", x_.back(), ", circumference ",
             circumference_, "): give it a larger circumference");
   }

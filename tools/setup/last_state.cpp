@@ -94,7 +94,7 @@ ListedParticles last_state(const std::string& file, Scene& scene) {
   const NumberRange range(scene.run);
   for (const DecimalColumn* numbers : {&listed.x, &listed.v, &listed.m})
     for (std::size_t i = 0; i < numbers->size(); ++i) range.check((*numbers)[i], {file, 0, snapshot});
-  ListedParticles particles = placed(std::move(listed), scene.initial.length, {file, 0, snapshot});
+  ListedParticles particles = placed(std::move(listed), scene.initial.length, {file, 0, snapshot}, false);
   check_order(particles.x, particles.v, scene.run, [&](std::size_t) { return Place{file, 0, snapshot + "/gap"}; });
   return particles;
 }

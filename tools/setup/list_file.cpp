@@ -143,7 +143,7 @@ void check_sums(const DecimalColumn& given, const DecimalColumn& sums, const Pla
 }
 
 // Adds to the largest number what rounding has left missing from the sum.
-void complete(DecimalColumn& numbers, std::string_view sum, const Place& place) {
+void complete(DecimalColumn& numbers, std::string_view sum, const Place& place, bool by_hand) {
   const auto sums = summed_up("0", numbers, 1);
   std::size_t largest = 0;
   double size = 0, sizes = 0;
@@ -152,7 +152,7 @@ void complete(DecimalColumn& numbers, std::string_view sum, const Place& place) 
     if (magnitude_of(numbers[i]) > size) size = magnitude_of(numbers[largest = i]);
   }
   const auto missing = sums ? exact_sum(sum, sums->back(), -1) : std::nullopt;
-  if (!missing || magnitude_of(*missing) > 1e-6 * sizes)
+  if (!missing || (by_hand && magnitude_of(*missing) > 1e-6 * sizes))
     throw Error(place, "numbers that do not add up to that of the ring",
                 fmt::format("{:.17g} for {}", sums ? Decimal(sums->back()).value : 0, sum),
                 "leave out the last one, or correct it");
@@ -164,7 +164,7 @@ void complete(DecimalColumn& numbers, std::string_view sum, const Place& place) 
 
 }  // namespace
 
-ListedParticles placed(ListedColumns listed, const Decimal& length, const Place& place) {
+ListedParticles placed(ListedColumns listed, const Decimal& length, const Place& place, bool by_hand) {
   auto& [x, v, m, gap, closing] = listed;
   const std::size_t pairs = v.size() - 1;
   for (const auto& [column, name, ring] : {std::tuple(&gap, "gap", std::string_view(length.text)),
@@ -175,7 +175,7 @@ ListedParticles placed(ListedColumns listed, const Decimal& length, const Place&
       throw Error(place, fmt::format("not one {} for each particle but the last", name),
                   fmt::format("{} for {} particles", column->size(), v.size()), fmt::format("give {}", pairs));
     if (!all_around) continue;
-    complete(*column, ring, place);
+    complete(*column, ring, place, by_hand);
     DecimalColumn but_last;
     for (std::size_t i = 0; i < pairs; ++i) but_last.push_back((*column)[i]);
     *column = std::move(but_last);
@@ -186,9 +186,9 @@ ListedParticles placed(ListedColumns listed, const Decimal& length, const Place&
     if (!sums)
       throw Error(place, "numbers of too different sizes", fmt::format("more than 20000 digits in a sum of {}s", name),
                   "give larger ones");
-    if (numbers.size() > pairs)
+    if (numbers.size() > pairs && by_hand)
       check_sums(numbers, *sums, place, name);
-    else if (numbers.size() > 1)
+    else if (numbers.size() > 1 && numbers.size() <= pairs)
       throw Error(place, "more than one place beside gaps", fmt::format("{} of {} x", numbers.size(), pairs + 1),
                   "give that of the first particle, or all");
     numbers = std::move(*sums);

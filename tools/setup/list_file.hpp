@@ -25,8 +25,9 @@ struct ListedColumns {
   DecimalColumn x, v, m, gap, closing_speed;
 };
 
-/// Adds up gaps and closing speeds. Throws Error if x or v are others than that by more than rounding.
-ListedParticles placed(ListedColumns listed, const Decimal& length, const Place& place);
+/// Adds up gaps and closing speeds. Throws Error if x or v, given by hand, are others than that by more than rounding (at
+/// a collapse the velocities of a result are nothing but rounding).
+ListedParticles placed(ListedColumns listed, const Decimal& length, const Place& place, bool by_hand = true);
 
 /// Reads CSV: columns x, v, m, gap, closing_speed (index is passed over) in any order, v and x or gap at least. Blank
 /// lines, lines beginning with '#', blanks around commas and CRLF line ends are accepted. The run's working precision

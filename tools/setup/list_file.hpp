@@ -25,8 +25,8 @@ struct ListedColumns {
   DecimalColumn x, v, m, gap, closing_speed;
 };
 
-/// Adds up gaps and closing speeds. Throws Error if x or v, given by hand, are others than that by more than rounding (at
-/// a collapse the velocities of a result are nothing but rounding).
+/// Adds up gaps and closing speeds. Throws Error if x or v are others than that by more than rounding, where they are
+/// given by hand: at a collapse the velocities of a result are nothing but rounding.
 ListedParticles placed(ListedColumns listed, const Decimal& length, const Place& place, bool by_hand = true);
 
 /// Reads CSV: columns x, v, m, gap, closing_speed (index is passed over) in any order, v and x or gap at least. Blank

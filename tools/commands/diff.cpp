@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "cradle/tools/commands/commands.hpp"
-#include "cradle/tools/ensemble/study.hpp"
 #include "cradle/tools/commands/difference.hpp"
+#include "cradle/tools/ensemble/study.hpp"
 #include "cradle/tools/result/files.hpp"
 #include "cradle/tools/setup/read_scene.hpp"
 

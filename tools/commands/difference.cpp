@@ -8,6 +8,7 @@
 #include <limits>
 #include <string_view>
 #include <tuple>
+#include <tuple>
 #include <type_traits>
 
 #include "cradle/tools/scene/decimal.hpp"

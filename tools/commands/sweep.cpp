@@ -15,8 +15,8 @@ struct SweepArguments : CommonOptions, OutputOptions {
 // The points of the command line or, without any, those of the scene.
 StudyPlan plan(const SweepArguments& options) {
   const bool of_scene = options.sweep.vary.empty() && options.sweep.points.empty();
-  const Scene scene = read_scene(options.scene, options.all_overrides(),
-                                 of_scene ? SweepPoint() : sweep_points(options.sweep).front());
+  const Scene scene =
+      read_scene(options.scene, options.all_overrides(), of_scene ? SweepPoint() : sweep_points(options.sweep).front());
   Sweep sweep = scene.sweep;
   if (!of_scene) {
     sweep.vary = options.sweep.vary;

@@ -7,8 +7,8 @@
 
 #include "cradle/tests/tools/ensemble/ensembles.hpp"
 #include "cradle/tests/tools/faults.hpp"
-#include "cradle/tools/ensemble/ensemble.hpp"
 #include "cradle/tools/commands/difference.hpp"
+#include "cradle/tools/ensemble/ensemble.hpp"
 #include "cradle/tools/result/files.hpp"
 #include "cradle/tools/result/result.hpp"
 #include "cradle/tools/setup/read_scene.hpp"

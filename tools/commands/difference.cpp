@@ -8,7 +8,6 @@
 #include <limits>
 #include <string_view>
 #include <tuple>
-#include <tuple>
 #include <type_traits>
 
 #include "cradle/tools/scene/decimal.hpp"

@@ -171,7 +171,8 @@ template <Real T> class ClusterChain : public ClusterPlaces<T> {
   // A cell as at the start. The gap right of the last held particle is not computed: it would draw random numbers in
   // vain.
   Cell<T> load(ParticleIndex b, const T& time, bool with_gap) const {
-    return {{with_gap ? particles_->gap(b) : T(1), time}, particles_->velocity(b) - frame_, particles_->mass(b), b};
+    return {
+        {with_gap ? particles_->gap(b) : T(1), time}, particles_->relative_velocity(b, frame_), particles_->mass(b), b};
   }
 
   static ParticleIndex growth(std::size_t held) {

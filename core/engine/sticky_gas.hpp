@@ -35,7 +35,7 @@ template <Real T> class StickyGas {
   // Throws std::invalid_argument as chains do. Of the policy it uses the caller's functions.
   StickyGas(std::shared_ptr<const Particles<T>> particles, const T& start, Policy<T> policy = {})
       : particles_(std::move(particles)), policy_(std::move(policy)), ring_(particles_->on_ring()), start_(start),
-        time_(start), lost_(particles_->energy_to_lose()) {
+        time_(start), common_(particles_->common_velocity()), lost_(particles_->energy_to_lose()) {
     require_particles(*particles_, start);
     require_no_gravity(*particles_, "leave gravity out, which merges no particles");
     const GapRange moving = ring_ ? GapRange{0, particles_->count() - 2} : particles_->gaps_in_motion();
@@ -62,7 +62,7 @@ template <Real T> class StickyGas {
   T kinetic_energy(const T&) const { return kinetic_energy(); }
   T kinetic_energy() const {
     const T total = particles_->total_mass(), drift = particles_->conserved_momentum() / total;
-    const auto moving = relative_motion(total, drift, [&](const T& c, const auto& add) {
+    const auto moving = relative_motion(total, T(drift - common_), [&](const T& c, const auto& add) {
       for (std::size_t k = 0; k < held_.size(); ++k) {
         T mass = held_[k].mass;
         if (!ring_ && k == 0) mass += particles_->mass_between(0, held_[k].first);
@@ -84,8 +84,8 @@ template <Real T> class StickyGas {
     const auto [from, to] = collided();
     return static_cast<ParticleIndex>(to - from);
   }
-  T front_left(const T&) const { return held_[collided().first].x; }
-  T front_right(const T&) const { return held_[collided().second - 1].x; }
+  T front_left(const T&) const { return drifted(held_[collided().first].x); }
+  T front_right(const T&) const { return drifted(held_[collided().second - 1].x); }
 
   // As for a chain, but that a cluster is named after its heaviest particle, the leftmost of equal ones: the order of
   // merges, by which a chain names it, is not known here.
@@ -113,8 +113,10 @@ template <Real T> class StickyGas {
       c.from = 0, c.to = particles_->count() - 1;
       c.gap.push_back(c.x.front() + (particles_->circumference() - c.x.back()));
       c.closing_speed.push_back(c.v.back() - c.v.front());
-      fold(c, particles_->circumference());
     }
+    for (T& x : c.x) x = drifted(x);
+    for (T& v : c.v) v += common_;
+    if (ring_) fold(c, particles_->circumference());
     return c;
   }
 
@@ -139,8 +141,10 @@ template <Real T> class StickyGas {
   }
 
  private:
-  struct MergedParticles {        // particles that have merged
-    T mass, moment, momentum, x;  // moment: at the start; x: at the time advanced to
+  // Particles that have merged, in a frame that moves with the velocity that all have in common. moment: at the start;
+  // x: at the time advanced to.
+  struct MergedParticles {
+    T mass, moment, momentum, x;
     ParticleIndex first, count, heaviest;
     T greatest;  // mass of the heaviest particle
 
@@ -156,12 +160,14 @@ template <Real T> class StickyGas {
 
   MergedParticles single(ParticleIndex b) const {
     const T m = particles_->mass(b);
-    MergedParticles lump{m, m * particles_->position(b), m * particles_->velocity(b), T(0), b, 1, b, m};
+    const T v = particles_->relative_velocity(b, common_);
+    MergedParticles lump{m, m * particles_->position(b), m * v, T(0), b, 1, b, m};
     lump.x = place(lump);
     return lump;
   }
   T place(const MergedParticles& c) const { return (c.moment + c.momentum * elapsed_) / c.mass; }
   static T velocity(const MergedParticles& c) { return c.momentum / c.mass; }
+  T drifted(const T& x) const { return x + common_ * elapsed_; }
 
   // Particles of equal velocity never meet, even if rounding of distant positions says so.
   static bool met(const MergedParticles& left, const MergedParticles& right) {
@@ -236,7 +242,7 @@ template <Real T> class StickyGas {
   std::shared_ptr<const Particles<T>> particles_;
   Policy<T> policy_;
   bool ring_;
-  T start_, time_, elapsed_{0};
+  T start_, time_, elapsed_{0}, common_;
   std::deque<MergedParticles> held_;  // from left to right
   Counts counts_;
   Ledger<T> lost_;

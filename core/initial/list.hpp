@@ -11,8 +11,16 @@
 
 namespace cradle {
 
-// Gaps and closing speeds of all neighbours, on a ring also those of the last particle and the first one.
-template <Real T> struct NeighbourDifferences { std::vector<T> gaps, closing_speeds; };
+// Gaps and closing speeds of all neighbours, on a ring also those of the last particle and the first one. `from_first`:
+// velocities less that of the first particle, which matter if all are `nearly_equal`.
+template <Real T> struct Differences { std::vector<T> gaps, closing_speeds, from_first; };
+
+// Whether velocities are nearer to each other than to 0: then what is left of them beside their mean has fewer digits.
+template <Real T> bool nearly_equal(const std::vector<T>& velocities) {
+  if (velocities.empty()) return false;
+  const auto [least, greatest] = std::minmax_element(velocities.begin(), velocities.end());
+  return T(*greatest - *least) < std::min(magnitude(*least), magnitude(*greatest));
+}
 
 template <Real T> class List final : public Particles<T> {
  public:
@@ -21,7 +29,7 @@ template <Real T> class List final : public Particles<T> {
   // equal in the working precision. A gap is 0 only if its particles do not approach. Throws std::invalid_argument if
   // lengths differ, a number is not finite, particles are not in order or span the ring, or a mass is not positive.
   List(std::vector<T> positions, std::vector<T> velocities, std::vector<T> masses = {}, T circumference = T(0),
-       std::optional<T> momentum = {}, NeighbourDifferences<T> differences = {})
+       std::optional<T> momentum = {}, Differences<T> differences = {})
       : x_(std::move(positions)), v_(std::move(velocities)), m_(std::move(masses)),
         differences_(std::move(differences)), circumference_(std::move(circumference)) {
     require(!x_.empty(), "no particles: list at least one");
@@ -43,6 +51,7 @@ template <Real T> class List final : public Particles<T> {
       total.add(mass(particle)), sum.add(mass(particle) * velocity(particle));
     total_mass_ = total.value(), momentum_ = sum.value();
     conserved_ = momentum ? *momentum : momentum_;
+    if (nearly_equal(v_)) leave_out_common_velocity();
   }
 
   ParticleIndex count() const override { return static_cast<ParticleIndex>(x_.size()); }
@@ -59,14 +68,16 @@ template <Real T> class List final : public Particles<T> {
     if (!differences_.closing_speeds.empty()) return differences_.closing_speeds[at(particle)];
     return v_[at(particle)] - v_[is_last(particle) ? 0 : at(particle) + 1];
   }
+  T common_velocity() const override { return common_; }
+  T relative_velocity(ParticleIndex particle, const T& of_centre) const override {
+    return relative_.empty() ? Particles<T>::relative_velocity(particle, of_centre) : relative_[at(particle)];
+  }
   T circumference() const override { return circumference_; }
   GapRange gaps_in_motion() const override { return {0, count() - (this->on_ring() ? 1 : 2)}; }
 
-  T kinetic_energy() const override {
-    CompensatedSum<T> twice;
-    for (ParticleIndex particle = 0; particle < count(); ++particle)
-      twice.add(mass(particle) * velocity(particle) * velocity(particle));
-    return twice.value() / T(2);
+  T kinetic_energy() const override { return energy_of(v_); }
+  T energy_to_lose() const override {
+    return relative_.empty() ? Particles<T>::energy_to_lose() : energy_of(relative_);
   }
   T momentum() const override { return momentum_; }
   T conserved_momentum() const override { return conserved_; }
@@ -83,7 +94,8 @@ template <Real T> class List final : public Particles<T> {
 
   void require_order() const {
     const std::size_t gaps = x_.size() - (this->on_ring() ? 0 : 1);
-    const auto& [given, speeds] = differences_;
+    const auto& given = differences_.gaps;
+    const auto& speeds = differences_.closing_speeds;
     require((given.empty() || given.size() == gaps) && (speeds.empty() || speeds.size() == gaps),
             "not one gap and closing speed for each pair of neighbours (", given.size(), " and ", speeds.size(),
             " for ", gaps, "): give all of them, or none");
@@ -104,9 +116,28 @@ template <Real T> class List final : public Particles<T> {
             circumference_, "): give it a larger circumference");
   }
 
+  T energy_of(const std::vector<T>& velocities) const {
+    CompensatedSum<T> twice;
+    for (ParticleIndex particle = 0; particle < count(); ++particle)
+      twice.add(mass(particle) * velocities[at(particle)] * velocities[at(particle)]);
+    return twice.value() / T(2);
+  }
+  void leave_out_common_velocity() {
+    relative_ = std::move(differences_.from_first);
+    if (relative_.empty())
+      for (const T& v : v_) relative_.push_back(v - v_.front());
+    CompensatedSum<T> momentum;
+    for (ParticleIndex particle = 0; particle < count(); ++particle)
+      momentum.add(mass(particle) * relative_[at(particle)]);
+    const T of_centre = momentum.value() / total_mass_;
+    for (T& u : relative_) u -= of_centre;
+    common_ = v_.front() + of_centre;
+  }
+
   std::vector<T> x_, v_, m_;
-  NeighbourDifferences<T> differences_;
-  T circumference_, total_mass_{0}, momentum_{0}, conserved_{0};
+  std::vector<T> relative_;  // velocities in the frame of the centre of mass, if they are nearly equal
+  Differences<T> differences_;
+  T circumference_, total_mass_{0}, momentum_{0}, conserved_{0}, common_{0};
   bool identical_ = true;
 };
 

@@ -88,6 +88,13 @@ template <Real T> class Particles {
   virtual T gap(ParticleIndex particle) const = 0;
   virtual T closing_speed(ParticleIndex particle) const = 0;
 
+  // A velocity that all particles have but for small differences; 0 if there is none.
+  virtual T common_velocity() const { return T(0); }
+  // The velocity of a particle less that of the centre of mass, without the cancellation where velocities are common.
+  virtual T relative_velocity(ParticleIndex particle, const T& of_centre) const {
+    return velocity(particle) - of_centre;
+  }
+
   // The gaps that a chain must hold from the start. The others have closing speed 0 and are inside a row: nothing can
   // happen there before a neighbouring gap has had a collision.
   virtual GapRange gaps_in_motion() const { return {0, count() - 2}; }

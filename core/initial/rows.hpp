@@ -23,6 +23,9 @@ template <Real T> struct Row {
 
 template <Real T> struct CentralParticle { T mass, velocity; };
 
+// Velocities of the rows and of the particle between them, without a velocity that they have in common.
+template <Real T> struct RowSpeeds { T left, centre, right; };
+
 // Displacement of a particle in units of 2^-28 of the spacing: particles stay in order, since its magnitude is below
 // 2^27 or since it gives them other places in order (poisson.hpp).
 using Displacement = std::function<std::int64_t(ParticleIndex)>;
@@ -97,11 +100,12 @@ template <Real T> class OnLattice : public Particles<T> {
 template <Real T> class Rows final : public Particles<T> {
  public:
   // Throws std::invalid_argument for rows that are empty or do not approach each other, spacings or masses that are not
-  // positive, a central particle that no row reaches, and numbers that are not finite.
+  // positive, a central particle that no row reaches, and numbers that are not finite. `differences`: of nearly equal
+  // velocities, from one of them, if they are known more precisely.
   Rows(Row<T> left, Row<T> right, std::optional<CentralParticle<T>> centre, Displacement displacement,
-       MassPattern<T> masses = {})
-      : left_(std::move(left)), right_(std::move(right)), centre_(std::move(centre)),
-        displacement_(std::move(displacement)), masses_(std::move(masses)),
+       MassPattern<T> masses = {}, const std::optional<RowSpeeds<T>>& differences = {})
+      : left_(std::move(left)), right_(std::move(right)), centre_(std::move(centre)), drifts_(differences.has_value()),
+        own_(drifts_ ? *differences : given()), displacement_(std::move(displacement)), masses_(std::move(masses)),
         left_unit_(left_.spacing / T(displacement_unit)), right_unit_(right_.spacing / T(displacement_unit)) {
     for (const auto& [row, name] : {std::pair{&left_, "left row"}, {&right_, "right row"}}) {
       require_finite(row->velocity, "velocity of the ", name);
@@ -110,14 +114,14 @@ template <Real T> class Rows final : public Particles<T> {
       require(row->spacing > T(0), "a row's spacing is not positive (", row->spacing, ", the ", name,
               "): give a positive number");
     }
-    require(left_.velocity > right_.velocity, "the rows do not approach each other (left ", left_.velocity, ", right ",
+    require(own_.left > own_.right, "the rows do not approach each other (left ", left_.velocity, ", right ",
             right_.velocity, "): make the left one faster");
+    if (drifts_) own_mean_ = total_momentum(own_) / total_mass();
     if (!centre_) return;
     require_finite(centre_->mass, "mass of the central particle");
     require_finite(centre_->velocity, "velocity of the central particle");
-    require(!(centre_->velocity > left_.velocity) && !(centre_->velocity < right_.velocity),
-            "the central particle runs away from a row (", centre_->velocity,
-            "): give it a speed between those of the rows");
+    require(!(own_.centre > own_.left) && !(own_.centre < own_.right), "the central particle runs away from a row (",
+            centre_->velocity, "): give it a speed between those of the rows");
     require(centre_->mass > T(0), "central mass is not positive (", centre_->mass, "): give a positive one");
   }
 
@@ -127,6 +131,10 @@ template <Real T> class Rows final : public Particles<T> {
 
   T velocity(ParticleIndex particle) const override {
     return particle < left_.count ? left_.velocity : is_centre(particle) ? centre_->velocity : right_.velocity;
+  }
+  T common_velocity() const override { return drifts_ ? T(left_.velocity + (own_mean_ - own_.left)) : T(0); }
+  T relative_velocity(ParticleIndex particle, const T& of_centre) const override {
+    return drifts_ ? T(own(particle) - own_mean_) : Particles<T>::relative_velocity(particle, of_centre);
   }
 
   T position(ParticleIndex particle) const override {
@@ -146,18 +154,16 @@ template <Real T> class Rows final : public Particles<T> {
     return position(particle + 1) - position(particle);
   }
 
-  T closing_speed(ParticleIndex particle) const override { return velocity(particle) - velocity(particle + 1); }
+  T closing_speed(ParticleIndex particle) const override { return own(particle) - own(particle + 1); }
 
   GapRange gaps_in_motion() const override { return {left_.count - 1, left_.count - (centre_ ? 0 : 1)}; }
 
-  T kinetic_energy() const override {
-    const T rows = left_mass() * left_.velocity * left_.velocity + right_mass() * right_.velocity * right_.velocity;
-    return (centre_ ? T(rows + centre_->mass * centre_->velocity * centre_->velocity) : rows) / T(2);
+  T kinetic_energy() const override { return energy(given()); }
+  T energy_to_lose() const override {
+    if (!drifts_) return Particles<T>::energy_to_lose();
+    return energy({own_.left - own_mean_, own_.centre - own_mean_, own_.right - own_mean_});
   }
-  T momentum() const override {
-    const T rows = left_mass() * left_.velocity + right_mass() * right_.velocity;
-    return centre_ ? T(rows + centre_->mass * centre_->velocity) : rows;
-  }
+  T momentum() const override { return total_momentum(given()); }
   T total_mass() const override {
     const T rows = left_mass() + right_mass();
     return centre_ ? T(rows + centre_->mass) : rows;
@@ -178,6 +184,18 @@ template <Real T> class Rows final : public Particles<T> {
  private:
   T left_mass() const { return masses_.total(0, left_.count); }
   T right_mass() const { return masses_.total(count() - right_.count, count()); }
+  RowSpeeds<T> given() const { return {left_.velocity, centre_ ? centre_->velocity : T(0), right_.velocity}; }
+  const T& own(ParticleIndex particle) const {
+    return particle < left_.count ? own_.left : is_centre(particle) ? own_.centre : own_.right;
+  }
+  T energy(const RowSpeeds<T>& v) const {
+    const T rows = left_mass() * v.left * v.left + right_mass() * v.right * v.right;
+    return (centre_ ? T(rows + centre_->mass * v.centre * v.centre) : rows) / T(2);
+  }
+  T total_momentum(const RowSpeeds<T>& v) const {
+    const T rows = left_mass() * v.left + right_mass() * v.right;
+    return centre_ ? T(rows + centre_->mass * v.centre) : rows;
+  }
   bool is_centre(ParticleIndex particle) const { return centre_ && particle == left_.count; }
 
   // Half spacings from the origin.
@@ -188,6 +206,9 @@ template <Real T> class Rows final : public Particles<T> {
 
   Row<T> left_, right_;
   std::optional<CentralParticle<T>> centre_;
+  bool drifts_;
+  RowSpeeds<T> own_;  // without a common velocity, if one has been left out
+  T own_mean_{0};     // of the centre of mass
   Displacement displacement_;
   MassPattern<T> masses_;
   T left_unit_, right_unit_;

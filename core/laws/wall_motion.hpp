@@ -133,13 +133,13 @@ template <Real T> class WallMotion {
   // for a small ratio s between s/8 and s/4, since halving towards 0 from afar would take as many steps as the type has
   // exponents.
   std::optional<T> release(const T& pull) const {
-    if (!jumps() && !(pull < curving_)) return {};
     switch (shape_) {
     case Shape::sawtooth:
       return T(1) / T(2);
     case Shape::parabola:
-      return T(0);
+      return pull < curving_ ? std::optional(T(0)) : std::nullopt;
     case Shape::sine:
+      if (!(pull < curving_)) return {};
       if (pull == T(0)) return T(0);
     }
     const T quarter = T(1) / T(4), ratio = pull / curving_;

@@ -117,13 +117,19 @@ struct Frame {
 inline constexpr Frame mirror_frame{.length = -1, .speed = -1};
 inline Scene<double> seen_in(const Particles<double>& particles, const Frame& frame) {
   std::vector<double> x, v, m;
+  Differences<double> differences;  // as a drift leaves them, which may round all velocities to one
   for (ParticleIndex k = 0; k < particles.count(); ++k) {
     const ParticleIndex b = frame.length < 0 ? particles.count() - 1 - k : k;
     x.push_back(frame.length * particles.position(b));
     v.push_back(frame.speed * particles.velocity(b) + frame.drift);
     m.push_back(frame.mass * particles.mass(b));
+    if (frame.drift == 0) continue;
+    differences.from_first.push_back(particles.velocity(b) - particles.velocity(0));
+    if (k + 1 == particles.count()) break;
+    differences.gaps.push_back(particles.gap(b));
+    differences.closing_speeds.push_back(particles.closing_speed(b));
   }
-  return list(x, v, m);
+  return std::make_shared<List<double>>(x, v, m, 0., std::nullopt, std::move(differences));
 }
 
 // Collide at t = 1, and then both gaps are 1 wide and closing at 1: below a restitution of 7 - 4 sqrt 3 they collapse.

@@ -111,7 +111,7 @@ class Comparison {
                a.values);
   }
 
-  Differences result() && { return std::move(found_); }
+  ResultDifferences result() && { return std::move(found_); }
 
  private:
   void report(const std::string& where, const std::string& what, std::optional<double> size = {}) {
@@ -165,7 +165,7 @@ class Comparison {
 
   const std::string &first_, &second_;
   double rtol_;
-  Differences found_;
+  ResultDifferences found_;
 };
 
 }  // namespace
@@ -180,8 +180,8 @@ std::uint64_t ulps_between(double a, double b) {
   return static_cast<std::uint64_t>(std::max(x, y)) - static_cast<std::uint64_t>(std::min(x, y));
 }
 
-Differences differences(const Result& a, const Result& b, const std::string& first, const std::string& second,
-                        double rtol) {
+ResultDifferences differences(const Result& a, const Result& b, const std::string& first, const std::string& second,
+                              double rtol) {
   Comparison comparison(first, second, rtol);
   comparison.attributes(a.attributes, b.attributes, "");
   comparison.pair(

@@ -17,7 +17,7 @@ struct Difference {
   std::optional<double> size;  // the largest of its numbers, relative; nothing if one of them is infinite or NaN
 };
 
-struct Differences {
+struct ResultDifferences {
   std::vector<Difference> found;
   std::uint64_t numbers = 0;    // compared
   std::uint64_t tolerated = 0;  // different, but within the tolerance
@@ -25,8 +25,8 @@ struct Differences {
 
 /// Numbers a and b are equal if |a - b| <= rtol max(|a|, |b|). With rtol = 0 their bits must be equal; all NaN are
 /// equal. `first` and `second` name the results in the text.
-Differences differences(const Result& a, const Result& b, const std::string& first, const std::string& second,
-                        double rtol = 0);
+ResultDifferences differences(const Result& a, const Result& b, const std::string& first, const std::string& second,
+                              double rtol = 0);
 
 /// How many steps between neighbouring numbers of the type lead from a to b; 0 and -0 are the same.
 std::uint64_t ulps_between(double a, double b);

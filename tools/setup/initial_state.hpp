@@ -113,14 +113,17 @@ std::shared_ptr<const cradle::Particles<T>> particles_without_walls(const Initia
   if (initial.type == InitialType::list) {
     const DecimalColumn &x = initial.x, &v = initial.v;
     const auto momentum = sum_of_products(v, initial.m);
-    NeighbourDifferences<T> between{neighbour_differences<T>(x, 1), neighbour_differences<T>(v, -1)};
+    std::vector<T> velocities = numbers<T>(v);
+    Differences<T> between{neighbour_differences<T>(x, 1), neighbour_differences<T>(v, -1), {}};
+    if (nearly_equal(velocities))
+      for (std::size_t i = 0; i < v.size(); ++i) between.from_first.push_back(from_text<T>(difference(v[i], v[0])));
     if (initial.on_ring()) {
       between.gaps.push_back(from_text<T>(difference(initial.length.text, difference(x.back(), x[0]))));
       between.closing_speeds.push_back(from_text<T>(difference(v.back(), v[0])));
     }
-    return std::make_shared<List<T>>(numbers<T>(x), numbers<T>(v), numbers<T>(initial.m), number<T>(initial.length),
-                                     momentum ? std::optional<T>(from_text<T>(*momentum)) : std::nullopt,
-                                     std::move(between));
+    return std::make_shared<List<T>>(
+        numbers<T>(x), std::move(velocities), numbers<T>(initial.m), number<T>(initial.length),
+        momentum ? std::optional<T>(from_text<T>(*momentum)) : std::nullopt, std::move(between));
   }
   if (initial.type == InitialType::cold) {
     const auto all = static_cast<ParticleIndex>(initial.particles), hot = static_cast<ParticleIndex>(initial.hot);
@@ -156,8 +159,27 @@ std::shared_ptr<const cradle::Particles<T>> particles_without_walls(const Initia
   std::optional<CentralParticle<T>> centre;
   if (initial.centre.mass > Decimal("0"))
     centre = CentralParticle<T>{number<T>(initial.centre.mass), number<T>(initial.centre.speed)};
+  const auto &left = initial.left.speed, &right = initial.right.speed, &between = centre ? initial.centre.speed : right;
+  std::optional<RowSpeeds<T>> differences;
+  if (nearly_equal<T>({number<T>(left), number<T>(between), number<T>(right)})) {
+    const auto from_left = [&](const Decimal& v) { return from_text<T>(difference(v.text, left.text)); };
+    differences = {T(0), from_left(between), from_left(right)};
+  }
   return std::make_shared<Rows<T>>(row(initial.left), row(initial.right), centre, displacement,
-                                   mass_pattern<T>(initial));
+                                   mass_pattern<T>(initial), differences);
+}
+
+inline Shape shape_of(scene::Motion motion) {
+  switch (motion) {
+  case scene::Motion::sawtooth:
+    return Shape::sawtooth;
+  case scene::Motion::parabola:
+    return Shape::parabola;
+  case scene::Motion::sine:
+  case scene::Motion::none:
+    break;
+  }
+  return Shape::sine;
 }
 
 template <Real T> std::optional<Wall<T>> wall_of(const WallAt& wall, const Initial& initial) {
@@ -169,11 +191,8 @@ template <Real T> std::optional<Wall<T>> wall_of(const WallAt& wall, const Initi
                initial.seed,
                initial.replica};
   if (wall.shaken()) {
-    const Shape shape = wall.motion == scene::Motion::sawtooth   ? Shape::sawtooth
-                        : wall.motion == scene::Motion::parabola ? Shape::parabola
-                                                                 : Shape::sine;
-    made.motion = std::make_shared<const WallMotion<T>>(shape, number<T>(wall.amplitude), number<T>(wall.frequency),
-                                                        number<T>(wall.phase));
+    made.motion = std::make_shared<const WallMotion<T>>(shape_of(wall.motion), number<T>(wall.amplitude),
+                                                        number<T>(wall.frequency), number<T>(wall.phase));
   }
   if (wall.rest_speed) made.rest_speed = number<T>(*wall.rest_speed);
   return made;

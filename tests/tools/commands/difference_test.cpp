@@ -7,9 +7,9 @@
 namespace cradle::tests::difference_test {
 
 using tools::Column;
-using tools::Differences;
 using tools::Group;
 using tools::Result;
+using tools::ResultDifferences;
 
 constexpr double inf = std::numeric_limits<double>::infinity(), nan = std::numeric_limits<double>::quiet_NaN();
 
@@ -33,7 +33,7 @@ std::vector<std::string> lines(const Result& a, const Result& b, double rtol = 0
 }
 
 TEST(Difference, OfAResultAndItselfIsNone) {
-  const Differences none = differences(result(), result(), "A", "B");
+  const ResultDifferences none = differences(result(), result(), "A", "B");
   EXPECT_TRUE(none.found.empty());
   EXPECT_EQ(none.numbers, 3U + 3 + 4 + 3) << "three columns, three attributes";
   EXPECT_EQ(none.tolerated, 0U);
@@ -107,7 +107,7 @@ TEST(Difference, WithinAToleranceIsCounted) {
   Result near = result(), far = result();
   times(near)[2] = 2 + 1e-9;
   times(far)[0] = 1e-300;
-  const Differences none = differences(result(), near, "A", "B", 1e-9);
+  const ResultDifferences none = differences(result(), near, "A", "B", 1e-9);
   EXPECT_TRUE(none.found.empty());
   EXPECT_EQ(none.tolerated, 1U);
   EXPECT_EQ(lines(result(), near, 1e-10).size(), 1U);

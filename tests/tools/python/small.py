@@ -1,12 +1,15 @@
 """What the tests share: small results, made once in the working folder; a check of errors; what a page refers to."""
 import functools
 import html.parser
+import signal
 import subprocess
 import sys
 import unittest
 
 import cradle
 from cradle import compiled, program
+
+signal.signal(signal.SIGINT, signal.default_int_handler)  # which a shell's background jobs ignore
 
 
 class Case(unittest.TestCase):

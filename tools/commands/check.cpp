@@ -25,9 +25,12 @@ Exit check(const CommonOptions& options) {
   if (cost.memory < 1e8) begin_engine(scene, {});  // refuses what a run does
   fmt::print("\nparticles in the active zone at the end: {} at most\n", about(cost.particles, 3));
   fmt::print("{}", expected_lines(scene, cost));
-  if (cost.collisions)
-    fmt::print("time{}: about {} s at {} collisions/s\n", cost.collapse || cost.clustering ? " until then" : "",
-               about(*cost.collisions / cost.collisions_per_second), about(cost.collisions_per_second));
+  if (cost.collisions) {
+    const bool of_a_part = cost.collapse || cost.clustering;
+    const double seconds = *cost.collisions / cost.collisions_per_second + (of_a_part ? 0 : cost.seconds_of_samples);
+    fmt::print("time{}: about {} s{} at {} collisions/s\n", of_a_part ? " until then" : "", about(seconds),
+               of_a_part ? "" : ", with samples,", about(cost.collisions_per_second));
+  }
   const unsigned threads = thread_count(options.threads);
   const Threading threading = expected_threading(scene, cost, threads);
   if (threading.alone.empty())

@@ -18,12 +18,12 @@ struct RunArguments : CommonOptions, OutputOptions {};
 std::string summary(const RunOutcome& run, std::uint64_t collisions_before) {
   const double per_second = static_cast<double>(run.collisions - collisions_before) / run.seconds;
   const int digits = std::clamp(static_cast<int>(run.energy_digits), 1, 10);
-  return fmt::format("{}: t = {}, {} collisions, energy {:.{}g}{}, {:.2f} s, {}\n", end_row(run.end).text, run.time,
+  return fmt::format("{}: t = {}, {} collisions, energy {:.{}g}{}, {:.2f} s{}, {}\n", end_row(run.end).text, run.time,
                      run.collisions, run.energy, digits,
                      run.energy_digits < 1 ? " (no digit is certain)"
-                     : run.may_have_grown  ? " (unless rounding has grown)"
+                     : run.may_have_grown  ? " (unless errors have grown: cradle trust)"
                                            : "",
-                     run.seconds,
+                     run.seconds, collisions_before > 0 ? " since it was continued" : "",
                      per_second < 1e5 ? fmt::format("{:.0f} collisions/s", per_second)
                                       : fmt::format("{:.1f} million collisions/s", per_second * 1e-6));
 }

@@ -258,9 +258,9 @@ std::string trust_table(const Scene& scene, const std::vector<Trusted>& runs) {
   }
   text += "\nTimes are those of samples (output.series). Right: the same sequence of collisions at every particle as "
           "the reference; collisions: how many these are.\ncounts: numbers of collisions and merges. energy, front: "
-          "digits shared with the reference at the last sample of both, of those that the type has, 100 at most, "
-          "from the first digit of the number on (of a greater energy at the start), so fewer where it passes zero; "
-          "t_c: of the collapse time. 6 digits until: the last sample up to which energy and front share that many.\n"
+          "digits shared with the reference at the last sample of both, of those that the type has, 100 at most, from "
+          "the first digit on of the energy at the start or of a greater one (k fewer if it has fallen by 10^k), or of "
+          "the front (fewer where it passes zero). t_c: of the collapse time. 6 digits until: they share six.\n"
           "proved: until when these collisions are proved to be those of the exact system (cradle certify); -: none.\n";
   if (!scene.run.stop_gap && status_of_text(runs.back().outcome) == Exit::collapse)
     text +=

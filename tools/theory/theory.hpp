@@ -25,6 +25,7 @@ struct Cost {
   bool floor = false;                // on which particles may collapse, at a time that is not known
   std::string endless = {};          // a line, if nothing ends the run where particles collapse
   double collisions_per_second = 0;
+  double seconds_of_samples = 0;
   double memory = 0;  // bytes
 
   /// Whether the pace of a run says how long the rest takes.

@@ -38,9 +38,9 @@ PICTURES = {  # what each one shows, and what to see in it, for a reader who has
     "structure": "Four nested zooms into a core that positions cannot resolve (Fig. 3). Each panel enlarges the "
                  "rectangle of the one before. Distances are sums of the gaps, which have all their digits however "
                  "small they are.",
-    "energy": "Energy and number of collisions against time (Fig. 4). Above, how the energy falls as collisions take "
-              "it away, beside the theory if there is one; below, how many collisions there have been. Where that "
-              "curve turns upwards sharply, particles collapse.",
+    "energy": "Energy and number of collisions against time (as in Fig. 4). Above, the energy, which collisions take "
+              "away and walls may change, beside the theory if there is one; below, how many collisions there have "
+              "been. Where particles collapse, that curve turns upwards sharply.",
     "sticky": "The weak solution: step of velocity, rows and delta peak, mass of the cluster (Fig. 1). All particles "
               "that have met are one: the step between the rows is sharp, and the arrow in the density grows with the "
               "mass that has arrived.",

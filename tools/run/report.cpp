@@ -60,10 +60,8 @@ std::string within(const Number& x, const Number& error) {
   return mantissa + (exponent == std::string::npos ? "" : text.substr(exponent)) + " +- " + error_text(error);
 }
 
-// The text for standard output; times have all digits that are known. `at_wall`: the wall on which it was, if it can
-// hold particles.
-std::string collapse_report(const ReportedCollapse& r, RunEnd end, std::uint64_t collisions,
-                            const std::string& at_wall) {
+// The text for standard output; times have all digits that are known.
+std::string collapse_report(const ReportedCollapse& r, RunEnd end, std::uint64_t collisions) {
   std::string text =
       r.settled ? fmt::format("inelastic collapse at t_c = {}\n", within(r.time, r.uncertainty))
       : end == RunEnd::small_gap
@@ -80,9 +78,6 @@ std::string collapse_report(const ReportedCollapse& r, RunEnd end, std::uint64_t
     text += fmt::format("  interval       {} since the collision there before\n", brief(r.interval));
   if (r.settled)
     text += fmt::format("  ratio          {} of successive intervals there\n", within(r.ratio, r.ratio_uncertainty));
-  text +=
-      fmt::format("  to continue    give {} a speed, or run.stop_gap a smaller gap to follow the collapse further\n",
-                  at_wall.empty() ? "law.cutoff" : at_wall + ".rest_speed");
   return text;
 }
 
@@ -292,7 +287,10 @@ RunEnding::RunEnding(const Scene& scene, const AnyEngine& engine, const RunState
   const std::string floor = collapsing_floor(scene);
   const bool on_floor =
       floor == "walls.left" ? found->particle < 0 : floor == "walls.right" && found->particle + 1 == engine.particles();
-  outcome.report = collapse_report(*found, outcome.end, outcome.collisions, on_floor ? floor : "");
+  outcome.report = collapse_report(*found, outcome.end, outcome.collisions) +
+                   fmt::format("  to go past it  give {}{}\n",
+                               on_floor ? floor + ".rest_speed" : "law.cutoff, or run.collapse = \"merge\"",
+                               scene.run.stop_gap ? "; a smaller run.stop_gap follows it further" : "");
   outcome.collapse_time = (found->settled ? found->time : found->last_collision).text();
   collapse = collapse_tables(*found);
 }

@@ -85,7 +85,7 @@ def draw_cooling(result, panels):
         x=since_label(points[0]), height=2.9)
     for point, colour, label in zip(shown, [*shades(len(others)), "k"], labels):
         _, at, energy, law = cooled(point)
-        line = "--" if point.law == "inelastic" else "-"
+        line = "--" if point.law == "inelastic" and reference else "-"  # beside wet and sticky particles
         top.plot(at, energy, line, color=colour, label=label, zorder=3 if point is reference else 2)
         if reference is not None:
             _, seen, known, _ = cooled(reference)

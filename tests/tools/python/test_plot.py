@@ -154,6 +154,9 @@ class Pictures(small.Case):
                  {"output.profiles.times": [200, 500, 1000]}),
                 (cradle.run, "fig11", {"initial.particles": 2000, "run.until": 1900, "output.series.points": 400},
                  {"output.masses": [1900]}),
+                (functools.partial(cradle.sweep, vary={"law.cutoff": [1e-3, 1e-2]}), "beyond",
+                 {"initial.particles": 400, "law.restitution": 0.97, "run.until": 420, "output.snapshots": [],
+                  "output.series.every": "", "output.series.points": 85}, {}),
                 (functools.partial(cradle.sweep, vary={"law.restitution": [0.5]}, replicas=10), "collapse_times",
                  {"initial.particles": 40, "law.cutoff": 0, "run.until": 100}, {})):
             drawn = []
@@ -205,13 +208,13 @@ class Pictures(small.Case):
         hot = {"law": {"type": "inelastic", "restitution": 1}, "run": {"until": 50}, "walls": {
             "left": {"position": 0, "temperature": 2}, "right": {"position": 6, "temperature": 1}},
                "output": {"averages": {"every": 1, "from": 10, "bins": 3}}}
-        currents = []
-        for m in ([1] * 5, [4] * 5, [1, 4, 1, 4, 1]):
+        currents, falling = [], {"gravity": {"acceleration": -0.1}}
+        for m, more in (([1] * 5, {}), ([4] * 5, {}), ([1, 4, 1, 4, 1], {}), ([1] * 5, falling)):
             start = {"type": "list", "x": [0.9, 2.3, 3.1, 4.2, 5.6], "v": [0.3, 1, 0.1, -1.1, 0], "m": m}
-            with cradle.run(hot | {"initial": start}, output="hot.h5", force=True) as result:
+            with cradle.run(hot | more | {"initial": start}, output="hot.h5", force=True) as result:
                 currents.append(measured.exact_current(result))
         self.assertAlmostEqual(currents[0] / currents[1], 2)  # as of speeds
-        self.assertIsNone(currents[2])
+        self.assertEqual(currents[2:], [None, None])
         counted = {"law": {"type": "inelastic", "restitution": 1}, "run": {"until": 5},
                    "output": {"histograms": ["closing_speed"]}}
         for masses, labels in (({}, ["equilibrium"]), ({"masses": [2]}, ["equilibrium"]),
@@ -234,6 +237,12 @@ class Pictures(small.Case):
             self.assertIn("front_right", result.series)
             self.assertEqual([ax.get_ylabel()[:6] for ax in cradle.plot.ensemble(result).axes], ["energy", "collis"])
 
+    def test_trust_shows_where_collisions_cease_to_be_right(self):
+        with cradle.open(small.trust()) as result:
+            ends = [run["collisions_right_until"] for run in result.trust[:-1] if not run["right_to_end"]]
+            lines = [line.get_xdata() for line in cradle.plot.trust(result).axes[0].get_lines()]
+        self.assertEqual([x[0] for x in lines if len(x) == 2], ends)
+
     def test_a_spread_that_was_counted_is_drawn_where_bins_resolve_it(self):
         with cradle.ensemble("fig2", 4, small.SHOCK | {"output.profiles.times": []}, output="spread.h5",
                              spread=["energy=24:25:100000", "particles=0:100:9"]) as result:
@@ -241,6 +250,8 @@ class Pictures(small.Case):
         self.assertEqual({name for name, ax in axes.items()
                           if "half of the replicas" in ax.get_legend_handles_labels()[1]}, {"energy"})
         self.assertEqual([name for name, ax in axes.items() if "bins are wider" in ax.get_title("right")], ["partic"])
+        self.assertIn("4 replicas, bands", axes["energy"].get_title("right"))
+        self.assertIn("4 replicas, 0 at the end,", cradle.plot.ensemble(small.ensemble()).axes[0].get_title("right"))
 
     def test_paths_end_at_the_seam_of_a_ring_and_a_ball_has_its_height(self):
         ring = {"law": {"type": "inelastic", "restitution": 1}, "run": {"until": 9},

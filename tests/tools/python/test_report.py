@@ -16,6 +16,7 @@ import small
 from cradle import program
 from cradle.errors import COLLAPSE, DIFFERS, DONE
 from cradle.page.elements import enclosed, measured, number
+from cradle.page.numbers import errors_may_grow
 from small import read
 
 BRIGHTNESS = """(() => {
@@ -140,6 +141,16 @@ class Reports(small.Case):
                 (small.collapse, "last interval", "unknown")):
             found = re.search(rf"<th scope=row>{label}<td>.*<span class=\"tag (\w+)\">", small.page(make))
             self.assertEqual(found[1], known, label)
+
+    def test_say_where_errors_may_have_grown(self):
+        for table, keys, grown in (
+                ("initial", {"m": [1, 1]}, False), ("initial", {"m": [1, 2]}, True), ("initial", {"masses": [2]}, True),
+                ("initial", {"random_masses": [1, 2]}, True), ("run", {"collapse": "merge"}, True),
+                ("run", {"coordinates": "absolute"}, True), ("law", {"type": "wet"}, True), ("gravity", {}, True),
+                ("walls", {"left": {}}, False), ("walls", {"left": {"motion": "sine"}}, True),
+                ("walls", {"right": {"temperature": 1}}, True)):
+            scene = {"law": {"type": "inelastic"}, "initial": {}, "run": {}} | {table: keys}
+            self.assertEqual(errors_may_grow(scene), grown, keys)
 
     def test_tables_of_sweeps_have_no_blanks(self):
         # The second point takes the cut-off of the scene, the third one has none.

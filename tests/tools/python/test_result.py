@@ -163,6 +163,7 @@ class Others(unittest.TestCase):
             self.assertEqual(len(result.sweep["law.restitution"]), 6)
             point = result.points[1]
             self.assertEqual((point.kind, point.label), ("point", "law.restitution=0.5 initial.speed=1"))
+            self.assertTrue(point.sealed)
             self.assertEqual(repr(point), "<point law.restitution=0.5 initial.speed=1: 2 replicas; series>")
             self.assertEqual(point.series.energy.mean[0], 40 / 2)  # N u0^2 / 2 with u0 = 1
 

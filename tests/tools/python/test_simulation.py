@@ -220,6 +220,13 @@ class Functions(small.Case):
         sim.advance()
         self.assertEqual(last[-1], "reached the end")
 
+    def test_every_counts_from_all_digits_of_the_time(self):
+        sim, times = cradle.Simulation("fig2", WIDE | {"run.precision": "mpfr", "run.digits": 50}), []
+        sim.advance("0.12345678901234567890123456789")
+        sim.every(1, lambda s: times.append(s.decimals("time")))
+        sim.advance(2)
+        self.assertEqual(times[0][:31], "1.12345678901234567890123456789")
+
     def test_functions_cannot_advance_or_read_within_a_collision(self):
         sim = shock()
         sim.on_collision(lambda c: sim.time)

@@ -172,13 +172,15 @@ class Queries(small.Case):
         self.refused(2, "no bundled scene of this name .found no_such.: see `cradle scenes`", cradle.scenes, "no_such")
 
     def test_check_has_effective_values_and_cost(self):
-        checked = cradle.check("fig2", set={"law": {"cutoff": None}, "run": {"until": 100}}, seed=7)
+        checked = cradle.check("fig2", set={"law": {"cutoff": None}, "run": {"until": 100},
+                                            "output.series.points": 2}, seed=7)
         self.assertEqual((checked["law.restitution"], checked["run.until"], checked["initial.seed"]), (0.999, 100, 7))
         self.assertEqual(checked["law.type"], "inelastic")
         self.assertEqual(checked["run.coordinates"], "gaps", "defaults too")
         self.assertEqual((checked["law.cutoff"], checked["run.collapse"]), (0, "stop"), "unset: the default")
         self.assertGreater(checked.collisions, 1000)
         self.assertAlmostEqual(checked.seconds, checked.collisions / 2e7, delta=0.1 * checked.seconds)
+        self.assertGreater(cradle.check("fig2", set={"run.until": 100}).seconds, 2 * checked.seconds, "more samples")
         self.assertGreater(checked.megabytes, 0)
         collapsed = cradle.check("fig2", set={"law.restitution": 0.99})
         self.assertIn("until inelastic collapse", repr(collapsed))
